@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "gaussmap/gaussian/cell_moments.h"
+#include "gaussmap/map/grid.h"
+#include "gaussmap/map/point_block.h"
+
+namespace gaussmap {
+
+/// The finest scale while it grows: points in, exact moments per cell out.
+/// Open addressing over 8-byte slots, cells in fixed chunks: nothing is allocated per cell and a cell never moves.
+template <int D>
+class MomentGrid {
+ public:
+  struct Cell {
+    CellKey<D> key;
+    CellMoments<D> moments;
+  };
+  static_assert(sizeof(Cell) <= 96, "a finest cell must fit into one and a half cache lines");
+
+  /// Cells of side `resolution` [m]. Throws std::invalid_argument unless it is positive and finite.
+  explicit MomentGrid(double resolution);
+
+  double resolution() const { return resolution_; }
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  /// In order of first touch.
+  const Cell& operator[](std::size_t index) const { return chunks_[index / kChunk][index % kChunk]; }
+  /// Points counted so far.
+  std::int64_t pointCount() const { return point_count_; }
+
+  /// Counts the finite points of a block [m, map frame] and returns how many they were.
+  /// Throws std::out_of_range, naming the point, if one is too far for 32-bit cells; the block is then not counted.
+  std::size_t add(const PointBlock<D>& block);
+
+  /// Counts `count` points, `point(i)` giving anything indexable by axis ([0], [1], ...). Returns how many were finite.
+  template <typename PointAt>
+  std::size_t addPoints(std::size_t count, PointAt&& point) {
+    PointBlock<D> block;
+    std::size_t added = 0;
+    for (std::size_t first = 0; first < count; first += block.kCapacity) {
+      block.size = count - first < block.kCapacity ? count - first : block.kCapacity;
+      for (std::size_t i = 0; i < block.size; ++i) {
+        const auto& p = point(first + i);
+        for (int axis = 0; axis < D; ++axis) block.coordinate[axis][i] = static_cast<double>(p[axis]);
+      }
+      added += add(block);
+    }
+    return added;
+  }
+  std::size_t addPoints(const std::vector<Vector<D>>& points) {
+    return addPoints(points.size(), [&](std::size_t i) -> const Vector<D>& { return points[i]; });
+  }
+
+  /// Adds moments to one cell.
+  void add(const CellKey<D>& key, const CellMoments<D>& moments);
+
+  /// Adds all cells of another grid of the same resolution: exact, so any order of merging gives the same sums.
+  /// Throws std::invalid_argument if the resolutions differ.
+  void merge(const MomentGrid& other);
+
+  /// Bytes held, allocated ones.
+  std::size_t memoryBytes() const;
+
+ private:
+  struct Slot {
+    std::uint32_t tag;    // high half of the hash
+    std::uint32_t index;  // kEmpty or the cell's
+  };
+  static constexpr std::size_t kChunk = 4096;
+  static constexpr std::uint32_t kEmpty = 0xFFFFFFFFu;
+
+  Cell& cell(std::uint32_t index) { return chunks_[index / kChunk][index % kChunk]; }
+  Cell& findOrInsert(const CellKey<D>& key, std::uint64_t hash);
+  void grow();
+
+  double resolution_;
+  std::size_t size_ = 0;
+  std::int64_t point_count_ = 0;
+  std::vector<std::unique_ptr<Cell[]>> chunks_;
+  std::vector<Slot> slots_;
+};
+
+}  // namespace gaussmap

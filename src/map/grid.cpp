@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gaussmap/map/grid.h"
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+#include "lattice.h"
+
+namespace gaussmap {
+namespace {
+
+// Beyond this a covariance of the coarsest scale would not fit into doubles beside its noise floor
+// (condition number 1e14).
+constexpr double kMostSidesPerNoise = 1e7;
+constexpr std::int64_t kMostCellsAlongSide = std::int64_t{1} << 30;
+
+std::int64_t floorDivide(std::int64_t value, std::int64_t divisor) {
+  const std::int64_t quotient = value / divisor;
+  return quotient - (value % divisor < 0 ? 1 : 0);
+}
+
+[[noreturn]] void refuse(const std::string& option, double value, const std::string& rule) {
+  std::ostringstream text;
+  text << option << " = " << value << ": " << rule;
+  throw std::invalid_argument(text.str());
+}
+
+}  // namespace
+
+template <int D>
+std::string toString(const CellKey<D>& key) {
+  std::string text = "(";
+  for (std::size_t axis = 0; axis < D; ++axis) text += (axis ? ", " : "") + std::to_string(key[axis]);
+  return text + ")";
+}
+
+template <int D>
+Grid<D>::Grid(const MapOptions& options) : options_(options) {
+  if (!(std::isfinite(options.resolution) && options.resolution > 0.0))
+    refuse("resolution", options.resolution, "the side of a cell must be a positive number of metres");
+  if (options.ratio < 2) refuse("ratio", options.ratio, "a coarser cell must be at least twice as wide");
+  if (options.scales < 1) refuse("scales", options.scales, "a map has at least one scale");
+  if (options_.noise == 0.0) options_.noise = options.resolution / 20.0;
+  if (!(std::isfinite(options_.noise) && options_.noise > 0.0))
+    refuse("noise", options.noise, "the noise floor must be positive (0 = resolution / 20)");
+  std::int64_t span = 1;
+  for (int scale = 0; scale < options.scales; ++scale) {
+    if (scale > 0) span *= options.ratio;
+    if (span > kMostCellsAlongSide)
+      refuse("scales", options.scales, "with this ratio the coarsest cell is wider than 2^30 finest cells");
+    spans_.push_back(span);
+    sides_.push_back(options.resolution * static_cast<double>(span));
+  }
+  if (sides_.back() > kMostSidesPerNoise * options_.noise)
+    refuse("noise", options_.noise, "less than 1e-7 of the coarsest cell's side: take fewer scales or more noise");
+}
+
+template <int D>
+CellKey<D> Grid<D>::keyOf(const Vector<D>& point, int scale) const {
+  const double steps_per_metre = stepsPerMetre(options_.resolution);
+  CellKey<D> key;
+  for (int axis = 0; axis < D; ++axis) {
+    const double steps = point(axis) * steps_per_metre;
+    if (!(std::abs(steps) < kLatticeLimit)) throwOutsideLattice(point.data(), D, options_.resolution);
+    key[static_cast<std::size_t>(axis)] = static_cast<std::int32_t>(snap(steps) >> 16);
+  }
+  return scale == 0 ? key : ancestor(key, 0, scale);
+}
+
+template <int D>
+CellKey<D> Grid<D>::ancestor(const CellKey<D>& key, int from, int to) const {
+  const std::int64_t span = cellsAlongSide(to) / cellsAlongSide(from);
+  CellKey<D> ancestor;
+  for (std::size_t axis = 0; axis < D; ++axis)
+    ancestor[axis] = static_cast<std::int32_t>(floorDivide(key[axis], span));
+  return ancestor;
+}
+
+template <int D>
+Vector<D> Grid<D>::centre(const CellKey<D>& key, int scale) const {
+  Vector<D> centre;
+  for (int axis = 0; axis < D; ++axis) {
+    // Counted in half finest cells, an integer: the same rounding as for the finest cells around it.
+    const std::int64_t halves = (2 * std::int64_t{key[static_cast<std::size_t>(axis)]} + 1) * cellsAlongSide(scale);
+    centre(axis) = 0.5 * static_cast<double>(halves) * options_.resolution;
+  }
+  return centre;
+}
+
+template <int D>
+Vector<D> Grid<D>::centreInParent(const CellKey<D>& key, int scale) const {
+  Vector<D> offset;
+  for (int axis = 0; axis < D; ++axis) {
+    const std::int64_t coordinate = key[static_cast<std::size_t>(axis)];
+    const std::int64_t digit = coordinate - floorDivide(coordinate, options_.ratio) * options_.ratio;
+    offset(axis) = 0.5 * static_cast<double>(2 * digit + 1 - options_.ratio) * side(scale);
+  }
+  return offset;
+}
+
+template std::string toString<2>(const CellKey<2>&);
+template std::string toString<3>(const CellKey<3>&);
+template class Grid<2>;
+template class Grid<3>;
+
+}  // namespace gaussmap
