@@ -6,7 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "lattice.h"
+#include "common/floor_divide.h"
+#include "map/lattice.h"
 
 namespace gaussmap {
 namespace {
@@ -15,11 +16,6 @@ namespace {
 // (condition number 1e14).
 constexpr double kMostSidesPerNoise = 1e7;
 constexpr std::int64_t kMostCellsAlongSide = std::int64_t{1} << 30;
-
-std::int64_t floorDivide(std::int64_t value, std::int64_t divisor) {
-  const std::int64_t quotient = value / divisor;
-  return quotient - (value % divisor < 0 ? 1 : 0);
-}
 
 [[noreturn]] void refuse(const std::string& option, double value, const std::string& rule) {
   std::ostringstream text;
@@ -62,9 +58,9 @@ CellKey<D> Grid<D>::keyOf(const Vector<D>& point, int scale) const {
   const double steps_per_metre = stepsPerMetre(options_.resolution);
   CellKey<D> key;
   for (int axis = 0; axis < D; ++axis) {
-    const double steps = point(axis) * steps_per_metre;
-    if (!(std::abs(steps) < kLatticeLimit)) throwOutsideLattice(point.data(), D, options_.resolution);
-    key[static_cast<std::size_t>(axis)] = static_cast<std::int32_t>(snap(steps) >> 16);
+    const std::int64_t lattice = snap(point(axis) * steps_per_metre);
+    if (misfitsLattice(lattice)) throwOutsideLattice(point.data(), D, options_.resolution);
+    key[static_cast<std::size_t>(axis)] = cellOfLattice(lattice);
   }
   return scale == 0 ? key : ancestor(key, 0, scale);
 }

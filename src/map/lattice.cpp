@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lattice.h"
+#include "map/lattice.h"
 
 #include <sstream>
 #include <stdexcept>

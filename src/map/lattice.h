@@ -12,19 +12,35 @@ namespace gaussmap {
 /// The rounding is one multiplication and one addition, each rounded by itself: the files that include this
 /// are compiled with -ffp-contract=off, so that no instruction set gives another lattice point.
 
-/// Lattice coordinates below this fit a 32-bit cell index (with one cell to spare for the rounding).
-inline constexpr double kLatticeLimit = 0x1.0p47 - 0x1.0p16;
-
 inline double stepsPerMetre(double resolution) { return static_cast<double>(kStepsPerCell) / resolution; }
 
-/// Nearest integer (ties to even) of |steps| < 2^51: adding 1.5 * 2^52 leaves it in the low bits.
+/// Adding 1.5 * 2^52 to |steps| < 2^51 leaves the nearest integer (ties to even) in the low bits of the double.
+inline constexpr double kSnap = 0x1.8p52;
+inline constexpr std::int64_t kSnapBits = 0x4338000000000000;
+
+/// Lattice coordinate from the bits of (steps + kSnap); anything else than a number below 2^51 gives nonsense that
+/// fitsLattice() refuses.
+inline std::int64_t latticeFromBits(std::int64_t bits) { return bits - kSnapBits; }
+
+/// 0 if the coordinate lies in a cell with a 32-bit index; not 0 also for what became of NaN and infinity.
+inline std::uint64_t misfitsLattice(std::int64_t lattice) {
+  return (static_cast<std::uint64_t>(lattice) + (std::uint64_t{1} << 47)) >> 48;
+}
+
+inline std::int32_t cellOfLattice(std::int64_t lattice) {
+  return static_cast<std::int32_t>(static_cast<std::uint64_t>(lattice) >> 16);
+}
+
+/// Offset from the cell's centre [steps].
+inline std::int32_t offsetOfLattice(std::int64_t lattice) {
+  return static_cast<std::int32_t>(lattice & (kStepsPerCell - 1)) - static_cast<std::int32_t>(kStepsPerCell / 2);
+}
+
 inline std::int64_t snap(double steps) {
-  constexpr double kMagic = 0x1.8p52;
-  const double shifted = steps + kMagic;
-  std::int64_t bits = 0, magic_bits = 0;
+  const double shifted = steps + kSnap;
+  std::int64_t bits = 0;
   std::memcpy(&bits, &shifted, sizeof bits);
-  std::memcpy(&magic_bits, &kMagic, sizeof magic_bits);
-  return bits - magic_bits;
+  return latticeFromBits(bits);
 }
 
 /// Throws std::out_of_range that quotes the point and the way out.

@@ -2,53 +2,108 @@
 #include "gaussmap/map/moment_grid.h"
 
 #include <cmath>
+#include <cstring>
 #include <sstream>
 #include <stdexcept>
 
-#include "lattice.h"
+#include "map/lattice.h"
 
 namespace gaussmap {
 namespace {
 
-template <int D>
-std::uint64_t hashOf(const CellKey<D>& key) {
-  std::uint64_t hash = 0;
-  for (std::size_t axis = 0; axis < D; ++axis)
-    hash = (hash ^ static_cast<std::uint32_t>(key[axis])) * 0x9E3779B97F4A7C15ull + (hash >> 29);
-  hash ^= hash >> 32;
-  return hash * 0xD6E8FEB86659FD93ull;
+constexpr std::size_t kBlock = PointBlock<3>::kCapacity;
+constexpr std::size_t kFirstSlots = 1024;
+
+// The loops over a block are compiled for several instruction sets; the loader takes the best one. All give the same
+// integers: no fused multiply-add, and rounding to nearest is exact everywhere.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
+#define GAUSSMAP_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define GAUSSMAP_CLONES
+#endif
+
+/// One axis of a block on the lattice. Returns 0 if every coordinate fits.
+GAUSSMAP_CLONES std::uint64_t snapAxis(const double* coordinates, std::size_t size, double steps_per_metre,
+                                       std::int32_t* cell, std::int32_t* offset) {
+  alignas(64) double shifted[kBlock];
+  alignas(64) std::int64_t bits[kBlock];
+  for (std::size_t i = 0; i < size; ++i) shifted[i] = coordinates[i] * steps_per_metre + kSnap;
+  std::memcpy(bits, shifted, size * sizeof(double));
+  std::uint64_t misfits = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    const std::int64_t lattice = latticeFromBits(bits[i]);
+    misfits |= misfitsLattice(lattice);
+    cell[i] = cellOfLattice(lattice);
+    offset[i] = offsetOfLattice(lattice);
+  }
+  return misfits;
 }
 
-constexpr int kBlock = int(PointBlock<3>::kCapacity);
-constexpr std::size_t kFirstSlots = 1024;
+/// One step of the hash of a key, 32 bits so that it runs in vector registers.
+inline std::uint32_t mix(std::uint32_t hash, std::int32_t coordinate) {
+  hash = (hash ^ static_cast<std::uint32_t>(coordinate)) * 0x9E3779B1u;
+  return hash ^ (hash >> 15);
+}
+inline std::uint32_t finish(std::uint32_t hash) {
+  hash *= 0x85EBCA77u;
+  return hash ^ (hash >> 13);
+}
+
+template <int D>
+std::uint32_t hashOf(const CellKey<D>& key) {
+  std::uint32_t hash = 0;
+  for (std::int32_t coordinate : key) hash = mix(hash, coordinate);
+  return finish(hash);
+}
+
+GAUSSMAP_CLONES void mixAxis(const std::int32_t* cell, std::size_t size, std::uint32_t* hash) {
+  for (std::size_t i = 0; i < size; ++i) hash[i] = mix(hash[i], cell[i]);
+}
+GAUSSMAP_CLONES void finishAll(std::size_t size, std::uint32_t* hash) {
+  for (std::size_t i = 0; i < size; ++i) hash[i] = finish(hash[i]);
+}
 
 /// A block on the lattice: what is left of the points is integers.
 template <int D>
 struct LatticeBlock {
-  int size = 0;
-  std::int32_t cell[D][kBlock];
-  std::int32_t offset[D][kBlock];  // from the cell's centre [steps]
+  std::size_t size = 0;
+  alignas(64) std::int32_t cell[D][kBlock];
+  alignas(64) std::int32_t offset[D][kBlock];  // from the cell's centre [steps]
+  alignas(64) std::uint32_t hash[kBlock];
+
+  /// True if every point was finite and in range.
+  bool snap(const PointBlock<D>& block, double resolution) {
+    size = block.size;
+    const double steps_per_metre = stepsPerMetre(resolution);
+    std::uint64_t misfits = 0;
+    for (int axis = 0; axis < D; ++axis)
+      misfits |= snapAxis(block.coordinate[axis], size, steps_per_metre, cell[axis], offset[axis]);
+    if (misfits != 0) return false;
+    std::memset(hash, 0, size * sizeof hash[0]);
+    for (int axis = 0; axis < D; ++axis) mixAxis(cell[axis], size, hash);
+    finishAll(size, hash);
+    return true;
+  }
+
+  CellKey<D> key(std::size_t i) const {
+    CellKey<D> key;
+    for (std::size_t axis = 0; axis < D; ++axis) key[axis] = cell[axis][i];
+    return key;
+  }
+  bool sameCell(std::size_t i, std::size_t j) const {
+    bool same = true;
+    for (int axis = 0; axis < D; ++axis) same &= cell[axis][i] == cell[axis][j];
+    return same;
+  }
 };
 
-/// Snaps one axis; true if every coordinate was finite and in range. Written for the vectoriser: no branch, no call.
-bool snapAxis(const double* coordinates, int size, double steps_per_metre, std::int32_t* cell, std::int32_t* offset) {
-  int bad = 0;
-  for (int i = 0; i < size; ++i) {
-    const double steps = coordinates[i] * steps_per_metre;
-    bad |= !(std::abs(steps) < kLatticeLimit);
-    const std::int64_t lattice = snap(steps);
-    // 48 bits of lattice coordinate: the upper 32 are the cell, the lower 16 the place in it.
-    cell[i] = static_cast<std::int32_t>(static_cast<std::uint64_t>(lattice) >> 16);
-    offset[i] = static_cast<std::int32_t>(lattice & 0xFFFF) - 0x8000;
-  }
-  return bad == 0;
-}
-
+/// The == of std::array calls memcmp.
 template <int D>
-bool isFinite(const PointBlock<D>& block, std::size_t i) {
-  for (int axis = 0; axis < D; ++axis)
-    if (!std::isfinite(block.coordinate[axis][i])) return false;
-  return true;
+bool same(const CellKey<D>& a, const CellKey<D>& b) {
+  std::int32_t difference = 0;
+  for (std::size_t axis = 0; axis < D; ++axis) difference |= a[axis] ^ b[axis];
+  return difference == 0;
 }
 
 /// The finite points of a block.
@@ -56,7 +111,9 @@ template <int D>
 PointBlock<D> finitePart(const PointBlock<D>& block) {
   PointBlock<D> finite;
   for (std::size_t i = 0; i < block.size; ++i) {
-    if (!isFinite<D>(block, i)) continue;
+    bool good = true;
+    for (int axis = 0; axis < D; ++axis) good &= std::isfinite(block.coordinate[axis][i]);
+    if (!good) continue;
     for (int axis = 0; axis < D; ++axis) finite.coordinate[axis][finite.size] = block.coordinate[axis][i];
     ++finite.size;
   }
@@ -64,25 +121,15 @@ PointBlock<D> finitePart(const PointBlock<D>& block) {
 }
 
 template <int D>
-bool snapBlock(const PointBlock<D>& block, double steps_per_metre, LatticeBlock<D>& lattice) {
-  lattice.size = static_cast<int>(block.size);
-  bool good = true;
-  for (int axis = 0; axis < D; ++axis)
-    good &= snapAxis(block.coordinate[axis], lattice.size, steps_per_metre, lattice.cell[axis], lattice.offset[axis]);
-  return good;
-}
-
-template <int D>
 [[noreturn]] void throwFirstOutside(const PointBlock<D>& block, double resolution) {
-  const double steps_per_metre = stepsPerMetre(resolution);
   double point[D] = {};
   for (std::size_t i = 0; i < block.size; ++i) {
-    bool inside = true;
+    std::uint64_t misfits = 0;
     for (int axis = 0; axis < D; ++axis) {
       point[axis] = block.coordinate[axis][i];
-      inside &= std::abs(point[axis] * steps_per_metre) < kLatticeLimit;
+      misfits |= misfitsLattice(snap(point[axis] * stepsPerMetre(resolution)));
     }
-    if (!inside) break;
+    if (misfits != 0) break;
   }
   throwOutsideLattice(point, D, resolution);
 }
@@ -99,7 +146,7 @@ MomentGrid<D>::MomentGrid(double resolution) : resolution_(resolution), slots_(k
 template <int D>
 std::size_t MomentGrid<D>::add(const PointBlock<D>& block) {
   LatticeBlock<D> lattice;
-  if (!snapBlock<D>(block, stepsPerMetre(resolution_), lattice)) {
+  if (!lattice.snap(block, resolution_)) {
     const PointBlock<D> finite = finitePart<D>(block);
     if (finite.size == block.size) throwFirstOutside<D>(block, resolution_);
     return add(finite);
@@ -107,44 +154,38 @@ std::size_t MomentGrid<D>::add(const PointBlock<D>& block) {
 
   // Points of a scan come in runs of the same cell: each run costs one look-up. The look-ups of a block are made
   // in three passes, so that the memory they need is on its way while the passes before it work.
-  struct Run {
-    int first;
-    std::uint64_t hash;
-  };
-  Run runs[kBlock + 1];
-  int run_count = 0;
-  const auto keyAt = [&lattice](int i) {
-    CellKey<D> key;
-    for (std::size_t axis = 0; axis < D; ++axis) key[axis] = lattice.cell[axis][i];
-    return key;
-  };
-  for (int i = 0; i < lattice.size; ++i) {
-    bool same = i > 0;
-    for (int axis = 0; axis < D && same; ++axis) same = lattice.cell[axis][i] == lattice.cell[axis][i - 1];
-    if (same) continue;
-    const std::uint64_t hash = hashOf<D>(keyAt(i));
-    __builtin_prefetch(&slots_[hash & (slots_.size() - 1)]);
-    runs[run_count++] = {i, hash};
+  std::uint32_t starts[kBlock + 1];
+  std::size_t runs = 0;
+  const std::size_t mask = slots_.size() - 1;  // a table that grows below leaves stale hints, no wrong ones
+  for (std::size_t i = 0; i < lattice.size; ++i) {
+    __builtin_prefetch(&slots_[lattice.hash[i] & mask]);
+    starts[runs] = static_cast<std::uint32_t>(i);
+    runs += i == 0 || !lattice.sameCell(i, i - 1);
   }
-  runs[run_count].first = lattice.size;
-  for (int run = 0; run < run_count; ++run) {
-    const std::uint32_t index = slots_[runs[run].hash & (slots_.size() - 1)].index;
-    if (index == kEmpty) continue;
-    const char* home = reinterpret_cast<const char*>(&cell(index));
+  starts[runs] = static_cast<std::uint32_t>(lattice.size);
+  std::uint32_t candidates[kBlock];
+  for (std::size_t run = 0; run < runs; ++run) {
+    const std::uint32_t hash = lattice.hash[starts[run]];
+    std::size_t position = hash & mask;
+    while (slots_[position].hash != hash && slots_[position].index != kEmpty) position = (position + 1) & mask;
+    candidates[run] = slots_[position].index;
+    if (candidates[run] == kEmpty) continue;
+    const char* home = reinterpret_cast<const char*>(&cell(candidates[run]));
     __builtin_prefetch(home, 1);
     __builtin_prefetch(home + sizeof(Cell) - 1, 1);
   }
-  for (int run = 0; run < run_count; ++run) {
-    CellMoments<D>& moments = findOrInsert(keyAt(runs[run].first), runs[run].hash).moments;
-    CellMoments<D> sums = moments;
-    for (int i = runs[run].first; i < runs[run + 1].first; ++i) {
+  for (std::size_t run = 0; run < runs; ++run) {
+    const std::size_t first = starts[run];
+    const CellKey<D> key = lattice.key(first);
+    const bool known = candidates[run] != kEmpty && same<D>(cell(candidates[run]).key, key);
+    CellMoments<D>& moments = (known ? cell(candidates[run]) : findOrInsert(key, lattice.hash[first])).moments;
+    for (std::size_t i = first; i < starts[run + 1]; ++i) {
       typename CellMoments<D>::Offset offset;
       for (std::size_t axis = 0; axis < D; ++axis) offset[axis] = lattice.offset[axis][i];
-      sums.add(offset);
+      moments.add(offset);
     }
-    moments = sums;
   }
-  point_count_ += lattice.size;
+  point_count_ += static_cast<std::int64_t>(lattice.size);
   return block.size;
 }
 
@@ -170,21 +211,20 @@ void MomentGrid<D>::merge(const MomentGrid& other) {
 }
 
 template <int D>
-typename MomentGrid<D>::Cell& MomentGrid<D>::findOrInsert(const CellKey<D>& key, std::uint64_t hash) {
-  const auto tag = static_cast<std::uint32_t>(hash >> 32);
+typename MomentGrid<D>::Cell& MomentGrid<D>::findOrInsert(const CellKey<D>& key, std::uint32_t hash) {
   std::size_t mask = slots_.size() - 1;
   std::size_t position = hash & mask;
   for (; slots_[position].index != kEmpty; position = (position + 1) & mask) {
     const Slot slot = slots_[position];
-    if (slot.tag == tag && cell(slot.index).key == key) return cell(slot.index);
+    if (slot.hash == hash && same<D>(cell(slot.index).key, key)) return cell(slot.index);
   }
-  if (size_ * 4 >= slots_.size() * 3) {
+  if (size_ * 8 >= slots_.size() * 5) {  // fuller, probes get long and their ends hard to predict
     grow();
     return findOrInsert(key, hash);
   }
   if (size_ >= kEmpty) throw std::length_error("more than 2^32 - 1 occupied cells: take coarser cells");
   if (size_ % kChunk == 0) chunks_.push_back(std::make_unique<Cell[]>(kChunk));
-  slots_[position] = {tag, static_cast<std::uint32_t>(size_)};
+  slots_[position] = {hash, static_cast<std::uint32_t>(size_)};
   Cell& fresh = cell(static_cast<std::uint32_t>(size_++));
   fresh.key = key;
   return fresh;
@@ -194,11 +234,11 @@ template <int D>
 void MomentGrid<D>::grow() {
   std::vector<Slot> wider(slots_.size() * 2, Slot{0, kEmpty});
   const std::size_t mask = wider.size() - 1;
-  for (std::size_t index = 0; index < size_; ++index) {
-    const std::uint64_t hash = hashOf<D>((*this)[index].key);
-    std::size_t position = hash & mask;
+  for (const Slot& slot : slots_) {
+    if (slot.index == kEmpty) continue;
+    std::size_t position = slot.hash & mask;
     while (wider[position].index != kEmpty) position = (position + 1) & mask;
-    wider[position] = {static_cast<std::uint32_t>(hash >> 32), static_cast<std::uint32_t>(index)};
+    wider[position] = slot;
   }
   slots_ = std::move(wider);
 }

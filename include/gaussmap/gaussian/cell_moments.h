@@ -13,7 +13,7 @@ inline constexpr std::int64_t kStepsPerCell = std::int64_t{1} << 16;
 
 /// Exact sums over the points of one cell, in integers, so that any order of points, any number of threads
 /// and any split into parts merged later give the same bytes. Offsets are counted from the cell's centre in
-/// steps, -32768 ... 32767: a product has at most 30 bits, so a cell holds 2^33 points.
+/// steps, -32768 ... 32767: a product has at most 30 bits, so a cell holds up to 2^33 - 1 points.
 template <int D>
 struct CellMoments {
   static constexpr int kProducts = D * (D + 1) / 2;

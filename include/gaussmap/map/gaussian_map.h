@@ -41,7 +41,8 @@ template <int D>
 class GaussianMap {
  public:
   /// An empty map. Throws std::invalid_argument on unusable options.
-  explicit GaussianMap(const MapOptions& options = {}) : grid_(options), scales_(std::size_t(grid_.scales())) {}
+  explicit GaussianMap(const MapOptions& options = {})
+      : grid_(options), scales_(std::size_t(grid_.scales())), weights_(scales_.size(), 0.0) {}
 
   /// From finished scales, finest first. Throws std::invalid_argument, saying what, if they do not fit together.
   GaussianMap(const MapOptions& options, std::vector<MapScale<D>> scales);
@@ -57,7 +58,7 @@ class GaussianMap {
   std::size_t cellCount(int s) const { return scale(s).keys.size(); }
   std::size_t gaussianCount(int s) const { return scale(s).gaussianCount(); }
   /// Sum of the weights of a scale: the number of points counted, the same at every scale.
-  double weight(int s) const;
+  double weight(int s) const { return weights_[static_cast<std::size_t>(s)]; }
 
   /// Index of a cell, or nothing if it is not occupied. Logarithmic in the children of a cell.
   std::optional<std::size_t> find(const CellKey<D>& key, int s) const;
@@ -83,6 +84,7 @@ class GaussianMap {
  private:
   Grid<D> grid_;
   std::vector<MapScale<D>> scales_;  // finest first
+  std::vector<double> weights_;      // of each scale
 };
 
 using GaussianMapOctree = GaussianMap<3>;

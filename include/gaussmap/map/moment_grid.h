@@ -69,14 +69,14 @@ class MomentGrid {
 
  private:
   struct Slot {
-    std::uint32_t tag;    // high half of the hash
+    std::uint32_t hash;   // of the key: most slots are told apart without a look at their cell
     std::uint32_t index;  // kEmpty or the cell's
   };
   static constexpr std::size_t kChunk = 4096;
   static constexpr std::uint32_t kEmpty = 0xFFFFFFFFu;
 
   Cell& cell(std::uint32_t index) { return chunks_[index / kChunk][index % kChunk]; }
-  Cell& findOrInsert(const CellKey<D>& key, std::uint64_t hash);
+  Cell& findOrInsert(const CellKey<D>& key, std::uint32_t hash);
   void grow();
 
   double resolution_;

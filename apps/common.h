@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "gaussmap/io/map_file.h"
+#include "gaussmap/mapping/accumulate_scans.h"
+
+namespace gaussmap::app {
+
+using Json = nlohmann::ordered_json;
+
+/// Options that make no sense: exit code 2. Everything else that goes wrong is exit code 1.
+struct UsageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// One function per command, called once by main.
+void addPcd2map(CLI::App& app);
+void addRefine(CLI::App& app);
+void addInfo(CLI::App& app);
+void addExport(CLI::App& app);
+void addHausdorff(CLI::App& app);
+void addSimulate(CLI::App& app);
+
+/// Which clouds, and how they lie in the map: the same words for every command that reads scans.
+struct ScanInput {
+  std::vector<std::string> paths;
+  std::string poses;
+  std::string frame = "sensor";
+  double max_range = 0.0;  // 0: no limit
+};
+void addScanOptions(CLI::App& command, ScanInput& input);
+
+/// Lists the scans, gives each its pose, lets the pose doctor look at them; warnings go to stderr.
+std::vector<ScanSource> findScans(const ScanInput& input);
+AccumulateOptions accumulateOptions(const ScanInput& input, double resolution, int threads);
+
+/// Adds --threads (0 = all).
+void addThreads(CLI::App& command, int& threads);
+/// Adds -o/--output (required) and --force.
+struct Output {
+  std::string path;
+  bool force = false;
+};
+void addOutput(CLI::App& command, Output& output, const std::string& what);
+/// Throws UsageError if the output exists and --force is not given, before any work is done.
+void checkOutput(const Output& output);
+
+/// A line on stderr that is written over; silent unless stderr is a terminal.
+class ProgressBar {
+ public:
+  ProgressBar();
+  ~ProgressBar();
+  void show(const AccumulateProgress& progress);
+
+ private:
+  bool on_terminal_;
+  bool shown_ = false;
+  double start_;
+};
+
+/// Seconds of a steady clock.
+double now();
+/// "12.3 MB".
+std::string humanBytes(std::uintmax_t bytes);
+
+/// Adds what was done to the history of a map file.
+void addHistory(MapMetadata& metadata, const Json& step);
+
+/// Cells and Gaussians of every scale.
+Json scalesOf(const GaussianMap<3>& map);
+
+}  // namespace gaussmap::app

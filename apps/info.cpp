@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// gaussmap info MAP: what is in a map file.
+#include <cstdio>
+#include <iostream>
+
+#include "common.h"
+#include "gaussmap/io/map_pcd.h"
+#include "gaussmap/map/extent.h"
+
+namespace gaussmap::app {
+namespace {
+
+struct InfoOptions {
+  std::string map;
+  bool json = false;
+};
+
+Json vectorOf(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+void printInfo(const InfoOptions& options) {
+  MapMetadata metadata;
+  const GaussianMap<3> map = loadAnyMap(options.map, &metadata);
+  const bool is_gmap = isGmap(options.map);
+  const MapFileSize size = is_gmap ? mapFileSize(options.map) : MapFileSize{std::filesystem::file_size(options.map), {}};
+  Json scales = scalesOf(map);
+  for (int s = 0; s < map.scales() && is_gmap; ++s) {
+    const auto index = static_cast<std::size_t>(s);
+    const std::uintmax_t bytes = index < size.scale_tiles.size() ? size.scale_tiles[index] : 0;
+    const double area = static_cast<double>(map.cellCount(s)) * map.grid().side(s) * map.grid().side(s);
+    scales[index]["bytes"] = bytes;
+    scales[index]["bytes_per_gaussian"] = map.empty() ? 0.0 : double(bytes) / double(map.gaussianCount(s));
+    scales[index]["bytes_per_square_metre"] = map.empty() ? 0.0 : double(bytes) / area;
+  }
+  const auto extent = extentOf<3>(map);
+  if (options.json) {
+    Json info = {{"map", options.map},
+                 {"resolution", map.options().resolution},
+                 {"ratio", map.options().ratio},
+                 {"noise", map.options().noise},
+                 {"finest", map.canGrow() ? "moments" : "gaussians"},
+                 {"scales", scales},
+                 {"bytes", size.file}};
+    if (extent) info["extent"] = {{"low", vectorOf(extent->low)}, {"high", vectorOf(extent->high)}};
+    for (const auto& [name, value] : metadata) {
+      const Json parsed = Json::parse(value, nullptr, false);
+      info[name] = parsed.is_discarded() ? Json(value) : parsed;
+    }
+    std::cout << info.dump(2) << '\n';
+    return;
+  }
+  std::printf("%s: %s, %s\n", options.map.c_str(), humanBytes(size.file).c_str(),
+              map.canGrow() ? "exact moments at the finest scale (takes more scans)" : "Gaussians only (final)");
+  std::printf("ratio %d, noise floor %g m", map.options().ratio, map.options().noise);
+  if (extent)
+    std::printf(", extent [%.2f %.2f %.2f] .. [%.2f %.2f %.2f] m", extent->low.x(), extent->low.y(), extent->low.z(),
+                extent->high.x(), extent->high.y(), extent->high.z());
+  std::printf("\n%5s %10s %10s %10s %12s %12s %12s\n", "scale", "cell [m]", "cells", "Gaussians", "weight", "bytes",
+              "bytes/m^2");
+  for (const Json& scale : scales) {
+    std::printf("%5d %10g %10zu %10zu %12.0f", scale["scale"].get<int>(), scale["cell_side"].get<double>(),
+                scale["cells"].get<std::size_t>(), scale["gaussians"].get<std::size_t>(), scale["weight"].get<double>());
+    if (is_gmap)
+      std::printf(" %12s %12.3g", humanBytes(scale["bytes"].get<std::uintmax_t>()).c_str(),
+                  scale["bytes_per_square_metre"].get<double>());
+    std::printf("\n");
+  }
+  const auto history = metadata.find("history");
+  if (history == metadata.end()) return;
+  const Json steps = Json::parse(history->second, nullptr, false);
+  if (!steps.is_array()) return;
+  for (const Json& step : steps) std::printf("made by %s\n", step.dump().c_str());
+}
+
+}  // namespace
+
+void addInfo(CLI::App& app) {
+  auto options = std::make_shared<InfoOptions>();
+  CLI::App* command = app.add_subcommand("info", "Scales, cells, Gaussians, extent and size of a map");
+  command->footer("bytes/m^2: compressed bytes per square metre of occupied cells (a cell counts side^2).\n"
+                  "Example: gaussmap info street.gmap --json");
+  command->add_option("map", options->map, "map (.gmap, or PCD of Gaussians)")->required();
+  command->add_flag("--json", options->json, "print for machines");
+  command->callback([options] { printInfo(*options); });
+}
+
+}  // namespace gaussmap::app

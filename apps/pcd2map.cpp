@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// gaussmap pcd2map IN... -o OUT.gmap: scans in, map file out.
+#include <cmath>
+#include <iostream>
+
+#include "common.h"
+#include "gaussmap/mapping/build.h"
+#include "gaussmap/mapping/refine.h"
+
+namespace gaussmap::app {
+namespace {
+
+struct Pcd2mapOptions {
+  ScanInput input;
+  Output output;
+  MapOptions map;
+  RefineOptions refine;
+  bool json = false;
+};
+
+void pcd2map(const Pcd2mapOptions& options) {
+  try {
+    const Grid<3> grid(options.map);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what());
+  }
+  checkOutput(options.output);
+  const double start = now();
+  const int threads = options.refine.threads;
+
+  const std::vector<ScanSource> scans = findScans(options.input);
+  ProgressBar bar;
+  AccumulatedScans accumulated =
+      accumulateScans(scans, accumulateOptions(options.input, options.map.resolution, threads),
+                      [&](const AccumulateProgress& progress) { bar.show(progress); });
+  const PointCounts counts = accumulated.counts;
+  if (counts.accepted == 0) throw std::runtime_error("none of the " + std::to_string(counts.read) +
+                                                     " points read is usable: all are NaN, at range 0 or too far");
+  GaussianMap<3> map = build<3>(accumulated.moments, options.map);
+  accumulated.moments = MomentGrid<3>(options.map.resolution);  // its memory is not needed twice
+  if (options.refine.budget > 1.0) map = refine<3>(std::move(map), options.refine);
+
+  const Json points = {{"read", counts.read},
+                       {"accepted", counts.accepted},
+                       {"non_finite", counts.non_finite},
+                       {"at_sensor", counts.at_sensor},
+                       {"beyond_range", counts.beyond_range}};
+  MapMetadata metadata;
+  addHistory(metadata, {{"command", "pcd2map"},
+                        {"version", GAUSSMAP_VERSION},
+                        {"scans", scans.size()},
+                        {"points", points},
+                        {"budget", options.refine.budget},
+                        {"seed", options.refine.seed}});
+  saveMap<3>(map, options.output.path, metadata, {options.output.force, SaveOptions().compression, threads});
+
+  const std::uintmax_t bytes = std::filesystem::file_size(options.output.path);
+  const double seconds = now() - start;
+  if (options.json) {
+    std::cout << Json({{"map", options.output.path},
+                       {"scans", scans.size()},
+                       {"points", points},
+                       {"scales", scalesOf(map)},
+                       {"bytes", bytes},
+                       {"seconds", seconds}})
+                     .dump(2)
+              << '\n';
+    return;
+  }
+  std::cout << options.output.path << ": " << scans.size() << " scans, " << counts.accepted << " points";
+  if (counts.accepted < counts.read)
+    std::cout << " (left out: " << counts.non_finite << " not finite, " << counts.at_sensor << " at range 0, "
+              << counts.beyond_range << " too far)";
+  std::cout << ", Gaussians per scale";
+  for (int s = 0; s < map.scales(); ++s) std::cout << (s ? " / " : " ") << map.gaussianCount(s);
+  std::cout << ", " << humanBytes(bytes) << ", " << std::round(seconds * 100.0) / 100.0 << " s\n";
+}
+
+}  // namespace
+
+void addPcd2map(CLI::App& app) {
+  auto options = std::make_shared<Pcd2mapOptions>();
+  CLI::App* command = app.add_subcommand("pcd2map", "Build a map from PCD scans");
+  command->footer(
+      "The pose of each scan is the VIEWPOINT of its file, unless --poses gives others or --frame map says that the\n"
+      "points lie in the map frame already.\n"
+      "Example: gaussmap pcd2map scans/*.pcd -o street.gmap --resolution 0.2 --budget 3");
+  command->add_option("scans", options->input.paths, "PCD files, or directories of them (in natural order)")->required();
+  addOutput(*command, options->output, "map file to write (.gmap)");
+  command->add_option("--resolution", options->map.resolution, "side of the finest cells [m]")->capture_default_str();
+  command->add_option("--scales", options->map.scales, "number of scales")->capture_default_str();
+  command->add_option("--ratio", options->map.ratio, "how many times wider the cells of the next scale are")
+      ->capture_default_str();
+  command->add_option("--noise", options->map.noise, "noise floor of every Gaussian [m]; 0: resolution / 20")
+      ->capture_default_str();
+  command->add_option("--budget", options->refine.budget,
+                      "Gaussians per coarse scale, as a multiple of its occupied cells; 1: no refinement")
+      ->check(CLI::Range(1.0, 1e6))
+      ->capture_default_str();
+  addScanOptions(*command, options->input);
+  command->add_option("--seed", options->refine.seed, "of the random swaps")->capture_default_str();
+  addThreads(*command, options->refine.threads);
+  command->add_flag("--json", options->json, "print the result for machines");
+  command->callback([options] { pcd2map(*options); });
+}
+
+}  // namespace gaussmap::app

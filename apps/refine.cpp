@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// gaussmap refine MAP -o OUT --budget X: another number of Gaussians at the coarse scales.
+#include "gaussmap/mapping/refine.h"
+
+#include <iostream>
+
+#include "common.h"
+#include "gaussmap/io/map_pcd.h"
+
+namespace gaussmap::app {
+namespace {
+
+struct RefineCommand {
+  std::string map;
+  Output output;
+  RefineOptions refine;
+  bool json = false;
+};
+
+void run(const RefineCommand& options) {
+  checkOutput(options.output);
+  const double start = now();
+  MapMetadata metadata;
+  GaussianMap<3> map = loadAnyMap(options.map, &metadata);
+  map = refine<3>(std::move(map), options.refine);
+  addHistory(metadata, {{"command", "refine"},
+                        {"version", GAUSSMAP_VERSION},
+                        {"budget", options.refine.budget},
+                        {"seed", options.refine.seed}});
+  saveMap<3>(map, options.output.path, metadata,
+             {options.output.force, SaveOptions().compression, options.refine.threads});
+  const std::uintmax_t bytes = std::filesystem::file_size(options.output.path);
+  if (options.json) {
+    std::cout << Json({{"map", options.output.path},
+                       {"scales", scalesOf(map)},
+                       {"bytes", bytes},
+                       {"seconds", now() - start}})
+                     .dump(2)
+              << '\n';
+    return;
+  }
+  std::cout << options.output.path << ": Gaussians per scale";
+  for (int s = 0; s < map.scales(); ++s) std::cout << (s ? " / " : " ") << map.gaussianCount(s);
+  std::cout << ", " << humanBytes(bytes) << '\n';
+}
+
+}  // namespace
+
+void addRefine(CLI::App& app) {
+  auto options = std::make_shared<RefineCommand>();
+  CLI::App* command = app.add_subcommand("refine", "Give the coarse scales of a map more (or fewer) Gaussians");
+  command->footer(
+      "The coarse scales are made anew from the finest: the result is that of pcd2map with the same budget and seed.\n"
+      "Example: gaussmap refine street.gmap -o fine.gmap --budget 4");
+  command->add_option("map", options->map, "map (.gmap, or PCD of Gaussians)")->required();
+  addOutput(*command, options->output, "map file to write (.gmap)");
+  command->add_option("--budget", options->refine.budget,
+                      "Gaussians per coarse scale, as a multiple of its occupied cells; 1: one per cell")
+      ->check(CLI::Range(1.0, 1e6))
+      ->capture_default_str();
+  command->add_option("--seed", options->refine.seed, "of the random swaps")->capture_default_str();
+  addThreads(*command, options->refine.threads);
+  command->add_flag("--json", options->json, "print the result for machines");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace gaussmap::app

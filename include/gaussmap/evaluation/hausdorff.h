@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "gaussmap/evaluation/sample_map.h"
+#include "gaussmap/gaussian/gaussian.h"
+#include "gaussmap/map/gaussian_map.h"
+
+namespace gaussmap {
+
+/// A set of distances in a few numbers [m]. Quantiles by nearest rank: q95 is the smallest of the distances that
+/// at least 95 % of them do not exceed, the ceil(0.95 n)-th in ascending order.
+struct DistanceSummary {
+  double max = 0.0;
+  double q99 = 0.0;
+  double q95 = 0.0;
+  double mean = 0.0;
+  double rms = 0.0;
+  std::size_t count = 0;  ///< n
+};
+
+/// Throws std::invalid_argument if there are no distances.
+DistanceSummary summarise(std::vector<double> distances);
+
+/// Distances between two sets of points, both directions apart.
+struct HausdorffResult {
+  DistanceSummary forward;   ///< from each point of a to its nearest of b
+  DistanceSummary backward;  ///< from each point of b to its nearest of a
+  /// The Hausdorff distance [m]: the larger of the two maxima.
+  double hausdorff() const { return forward.max > backward.max ? forward.max : backward.max; }
+};
+
+/// Hausdorff distance of two sets of points [m], one frame. `threads` = 0: all; never shows in the result.
+/// Throws std::invalid_argument if a set is empty or a point is not finite (naming its index).
+HausdorffResult hausdorff(const std::vector<Vector<3>>& a, const std::vector<Vector<3>>& b, int threads = 0);
+
+/// How far one scale of a map is from a reference; forward = from the map's samples to the reference (what the map
+/// invents), backward = from the reference to the samples (what the map misses).
+struct MapHausdorff {
+  HausdorffResult all;               ///< all samples inside their cells, as the paper has it
+  HausdorffResult within_two_sigma;  ///< only the samples at most 2 sigma from their means; count 0 if none is
+  std::size_t gaussians = 0;         ///< of the scale
+  std::size_t samples = 0;           ///< placed; `within_two_sigma.forward.count` of them are near their means
+  std::size_t unplaced = 0;          ///< samples that found no place in their cells, see sampleMap()
+};
+
+/// Samples a scale of the map and compares the samples with the reference [m, map frame], Yguel 2009 sec. 6.
+/// Note what the maximum of `all.forward` is: a Gaussian has no end but its cell's, so it grows with the number of
+/// samples (the paper's Hausdorff distance does too). Compare maps at equal options, or by q99, or by
+/// `within_two_sigma`, whose samples fill an ellipsoid. Throws std::invalid_argument if the reference or the scale is
+/// empty or a reference point not finite, std::out_of_range for a scale that the map does not have.
+MapHausdorff evaluateMap(const GaussianMap<3>& map, int scale, const std::vector<Vector<3>>& reference,
+                         const SampleOptions& options = {});
+
+}  // namespace gaussmap

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "gaussmap/gaussian/gaussian.h"
+#include "gaussmap/map/gaussian_map.h"
+
+namespace gaussmap {
+
+/// What the number of samples of a Gaussian is proportional to.
+enum class SampleShare {
+  Volume,  ///< of its ellipsoid, sqrt(det Sigma): every place the map claims is looked at, however few points it had
+  Mass     ///< its weight: samples stand as dense as the points did
+};
+
+struct SampleOptions {
+  std::size_t samples = 100000;  ///< shared out by `share`; the minimum below comes on top where it acts
+  std::size_t at_least = 30;     ///< for every Gaussian
+  SampleShare share = SampleShare::Volume;
+  std::uint64_t seed = 1;  ///< same map + same seed = same samples, to the last bit
+  int threads = 0;         ///< 0 = all; never shows in the result
+};
+
+/// Samples in the order of the map: by cell, then by Gaussian.
+template <int D>
+struct MapSamples {
+  std::vector<Vector<D>> points;        ///< n [m], map frame, each inside the cell of its Gaussian
+  std::vector<std::uint32_t> gaussian;  ///< n, index of the sample's Gaussian in the scale
+  std::vector<double> mahalanobis;      ///< n, distance to its Gaussian's mean in standard deviations
+  std::size_t unplaced = 0;             ///< asked for, but not found inside the cell (see sampleMap)
+
+  /// The points at most `sigmas` standard deviations from their means: a filter of the same samples.
+  std::vector<Vector<D>> within(double sigmas) const;
+};
+
+/// How many samples each Gaussian of a scale gets: max(at_least, round(samples * share / sum of shares)).
+/// Throws std::out_of_range for a scale the map does not have, std::domain_error if a covariance is not positive
+/// definite.
+template <int D>
+std::vector<std::size_t> sampleCounts(const GaussianMap<D>& map, int scale, const SampleOptions& options = {});
+
+/// Samples of the Gaussians of one scale, those outside their Gaussian's cell rejected, Yguel 2009 sec. 6.
+/// A Gaussian with (almost) no mass in its cell is given up after 1000 + 200 n tries for n samples; what was not
+/// placed by then is counted in `unplaced`. A Gaussian's samples depend on the seed, its cell's key, its rank in
+/// the cell and their number, not on where it stands in the map. Throws as sampleCounts().
+template <int D>
+MapSamples<D> sampleMap(const GaussianMap<D>& map, int scale, const SampleOptions& options = {});
+
+}  // namespace gaussmap

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "gaussmap/map/gaussian_map.h"
+
+namespace gaussmap {
+
+/// The .gmap file: an SQLite database with the tables `metadata` (name, value) and `tiles` (scale, x, y, z, cells,
+/// gaussians, data). A tile is the block of cells of one scale whose keys share floor(key / span), span = the
+/// smallest power of the ratio that is at least 32; `data` is a zstd frame with its own checksum, which holds the
+/// cells as columns. PRAGMA application_id names the format, PRAGMA user_version its schema.
+inline constexpr std::int32_t kMapFileId = 0x676D6170;  // "gmap"
+inline constexpr int kMapFileVersion = 1;
+
+/// Free text kept beside the map, by name: how it was made, where it lies.
+using MapMetadata = std::map<std::string, std::string>;
+
+struct SaveOptions {
+  bool overwrite = false;  ///< replace an existing file
+  int compression = 3;     ///< zstd level
+  int threads = 0;         ///< 0 = all; the bytes of the file do not depend on it
+};
+
+/// Writes the map whole or not at all: beside the target, then renamed over it. The same map gives the same bytes.
+/// Throws FileError if the file exists and may not be replaced, or cannot be written.
+template <int D>
+void saveMap(const GaussianMap<D>& map, const std::filesystem::path& path, const MapMetadata& metadata = {},
+             const SaveOptions& options = {});
+
+/// What saveMap wrote, equal to it in every bit. Throws FileError, saying what is wrong, if the file is no map, of a
+/// newer version, of another dimension, truncated or altered.
+template <int D>
+GaussianMap<D> loadMap(const std::filesystem::path& path);
+
+/// The metadata given to saveMap. Throws FileError as loadMap.
+MapMetadata loadMetadata(const std::filesystem::path& path);
+
+/// How large the parts of a map file are.
+struct MapFileSize {
+  std::uintmax_t file = 0;                  ///< [bytes]
+  std::vector<std::uintmax_t> scale_tiles;  ///< compressed tiles of each scale, finest first [bytes]
+};
+MapFileSize mapFileSize(const std::filesystem::path& path);
+
+}  // namespace gaussmap

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kl_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "small_cholesky.h"
+
+namespace gaussmap {
+namespace {
+
+// Rows of the product at a time: their features stay in the first-level cache, whatever n and k are.
+constexpr Eigen::Index kBlock = 256;
+
+/// The smallest entry of each row of X Y and its column, without storing the product. X: rows x F from `x`, a column
+/// every `stride`; Y: F x k. Plain loops that the compiler vectorises: the matrices of most cells are too small for
+/// a general product to pay (labels are doubles for the same reason).
+template <int D>
+void nearestOfBlock(const double* x, Eigen::Index stride, Eigen::Index rows, const typename KLProblem<D>::References& y,
+                    int* labels) {
+  double best[kBlock], nearest[kBlock];
+  std::fill(best, best + rows, std::numeric_limits<double>::infinity());
+  std::fill(nearest, nearest + rows, 0.0);
+  for (Eigen::Index c = 0; c < y.cols(); ++c) {
+    const Eigen::Matrix<double, KLProblem<D>::kFeatures, 1> weights = y.col(c);
+    const auto label = static_cast<double>(c);
+    for (Eigen::Index j = 0; j < rows; ++j) {
+      double distance = weights(0);  // feature 0 is 1
+      for (int f = 1; f < KLProblem<D>::kFeatures; ++f) distance += weights(f) * x[f * stride + j];
+      const bool nearer = distance < best[j];  // ties stay with the smaller label
+      best[j] = nearer ? distance : best[j];
+      nearest[j] = nearer ? label : nearest[j];
+    }
+  }
+  for (Eigen::Index j = 0; j < rows; ++j) labels[j] = static_cast<int>(nearest[j]);
+}
+
+/// Writes [1, mu, upper triangle of Sigma + mu mu'] into a row of features.
+template <int D, typename Row>
+void writeDataFeatures(const Vector<D>& mean, const Matrix<D>& cov, Row&& row) {
+  row(0) = 1.0;
+  int slot = 1;
+  for (int i = 0; i < D; ++i) row(slot++) = mean(i);
+  for (int i = 0; i < D; ++i)
+    for (int j = i; j < D; ++j) row(slot++) = cov(i, j) + mean(i) * mean(j);
+}
+
+/// y_w for every reference, F x k.
+template <int D>
+typename KLProblem<D>::References referenceFeatures(const std::vector<Gaussian<D>>& references) {
+  typename KLProblem<D>::References features(KLProblem<D>::kFeatures, static_cast<Eigen::Index>(references.size()));
+  for (std::size_t c = 0; c < references.size(); ++c) {
+    const SmallCholesky<D> factor(references[c].cov);
+    if (!factor.positive || !references[c].mean.allFinite())
+      throw std::domain_error("reference " + std::to_string(c) +
+                              ": the mean is not finite or the covariance is not positive definite");
+    const Matrix<D> inverse = factor.inverse();
+    const Vector<D> information = inverse * references[c].mean;
+    auto column = features.col(static_cast<Eigen::Index>(c));
+    column(0) = 0.5 * (references[c].mean.dot(information) + factor.logDeterminant());
+    int slot = 1;
+    for (int i = 0; i < D; ++i) column(slot++) = -information(i);
+    for (int i = 0; i < D; ++i)
+      for (int j = i; j < D; ++j) column(slot++) = i == j ? 0.5 * inverse(i, i) : inverse(i, j);
+  }
+  return features;
+}
+
+template <int D>
+void checkMeanAndWeight(const Gaussian<D>& datum, std::size_t index) {
+  if (!(datum.weight > 0.0 && std::isfinite(datum.weight)))
+    throw std::invalid_argument("datum " + std::to_string(index) + ": weight " + std::to_string(datum.weight) +
+                                " is not positive and finite");
+  if (!datum.mean.allFinite())
+    throw std::invalid_argument("datum " + std::to_string(index) + ": the mean is not finite");
+}
+
+}  // namespace
+
+void checkOptions(const KLKMeansOptions& options) {
+  const auto refuse = [](const std::string& name, double value, const std::string& rule) {
+    throw std::invalid_argument(name + " = " + std::to_string(value) + ": must be " + rule);
+  };
+  if (options.k < 1) refuse("k", options.k, "at least 1");
+  if (options.max_iterations < 1) refuse("max_iterations", options.max_iterations, "at least 1");
+  if (!(options.tolerance >= 0.0 && options.tolerance < 1.0)) refuse("tolerance", options.tolerance, "in [0, 1)");
+  if (options.max_swaps < 0) refuse("max_swaps", options.max_swaps, "at least 0");
+}
+
+template <int D>
+KLProblem<D>::KLProblem(const std::vector<Gaussian<D>>& data) : data_(data) {
+  if (data.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+    throw std::length_error("more than 2^31 - 1 data");
+  double weight = 0.0;
+  Vector<D> sum = Vector<D>::Zero();
+  for (std::size_t j = 0; j < data.size(); ++j) {
+    checkMeanAndWeight(data[j], j);
+    weight += data[j].weight;
+    sum += data[j].weight * (data[j].mean - data.front().mean);
+  }
+  if (data.empty()) return;
+  centre_ = data.front().mean + sum / weight;
+  const auto n = static_cast<Eigen::Index>(data.size());
+  features_.resize(n, kFeatures);
+  weights_.resize(n);
+  constants_.resize(n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const Gaussian<D>& z = data[static_cast<std::size_t>(j)];
+    const SmallCholesky<D> factor(z.cov);
+    if (!factor.positive)
+      throw std::domain_error("datum " + std::to_string(j) +
+                              ": covariance is not positive definite; add a noise floor to its eigenvalues");
+    const double log_determinant = factor.logDeterminant();
+    weighted_log_determinants_ += z.weight * log_determinant;
+    weights_(j) = z.weight;
+    constants_(j) = -0.5 * (log_determinant + D);
+    writeDataFeatures<D>(z.mean - centre_, z.cov, features_.row(j));
+  }
+}
+
+template <int D>
+void KLProblem<D>::assign(const std::vector<Gaussian<D>>& references, std::vector<int>& labels) const {
+  const References reference_features = referenceFeatures<D>(references);
+  const auto n = static_cast<Eigen::Index>(size());
+  labels.resize(size());
+  for (Eigen::Index first = 0; first < n; first += kBlock)
+    nearestOfBlock<D>(features_.data() + first, n, std::min(kBlock, n - first), reference_features,
+                      labels.data() + first);
+}
+
+template <int D>
+Eigen::VectorXd KLProblem<D>::ownDistances(const KLPartition<D>& partition) const {
+  const References reference_features = referenceFeatures<D>(partition.references);
+  Eigen::VectorXd distances(constants_.size());
+  for (Eigen::Index j = 0; j < distances.size(); ++j) {
+    const int label = partition.labels[static_cast<std::size_t>(j)];
+    distances(j) = std::max(0.0, features_.row(j).dot(reference_features.col(label)) + constants_(j));
+  }
+  return distances;
+}
+
+template <int D>
+Eigen::MatrixXd KLProblem<D>::distancesBetween(const std::vector<Gaussian<D>>& references) {
+  const auto k = static_cast<Eigen::Index>(references.size());
+  Features features(k, kFeatures);
+  for (Eigen::Index c = 0; c < k; ++c) {
+    const Gaussian<D>& w = references[static_cast<std::size_t>(c)];
+    writeDataFeatures<D>(w.mean, w.cov, features.row(c));
+  }
+  Eigen::MatrixXd distances = features * referenceFeatures<D>(references);
+  // KL(u || u) = 0 gives the part of each row that depends on u alone.
+  const Eigen::VectorXd own = distances.diagonal();
+  distances.colwise() -= own;
+  return distances;
+}
+
+template <int D>
+void KLProblem<D>::update(KLPartition<D>& partition) const {
+  std::vector<Gaussian<D>>& references = partition.references;
+  for (Gaussian<D>& w : references) w = {Vector<D>::Zero(), Matrix<D>::Zero(), 0.0};
+  partition.counts.assign(references.size(), 0);
+  for (std::size_t j = 0; j < size(); ++j) {
+    const auto label = static_cast<std::size_t>(partition.labels[j]);
+    references[label].weight += data_[j].weight;
+    references[label].mean += data_[j].weight * (data_[j].mean - centre_);
+    ++partition.counts[label];
+  }
+  for (Gaussian<D>& w : references)
+    if (w.weight > 0.0) w.mean /= w.weight;  // eq. (9)
+  for (std::size_t j = 0; j < size(); ++j) {
+    Gaussian<D>& w = references[static_cast<std::size_t>(partition.labels[j])];
+    const Vector<D> spread = data_[j].mean - centre_ - w.mean;
+    w.cov += data_[j].weight * (data_[j].cov + spread * spread.transpose());
+  }
+  // The expectation of [8] over a cluster needs only determinants when the reference is the moment match:
+  // sum alpha_j KL(z_j || w) = (alpha_w ln |Sigma_w| - sum alpha_j ln |Sigma_j|) / 2.
+  double weighted_log_determinants = 0.0;
+  std::size_t kept = 0;
+  std::vector<int> new_label(references.size());
+  for (std::size_t c = 0; c < references.size(); ++c) {
+    new_label[c] = static_cast<int>(kept);
+    if (partition.counts[c] == 0) continue;
+    references[c].cov /= references[c].weight;  // eq. (10), about the mean
+    weighted_log_determinants += references[c].weight * SmallCholesky<D>(references[c].cov).logDeterminant();
+    references[kept] = references[c];
+    partition.counts[kept++] = partition.counts[c];
+  }
+  if (kept < references.size()) {
+    references.resize(kept);
+    partition.counts.resize(kept);
+    for (int& label : partition.labels) label = new_label[static_cast<std::size_t>(label)];
+  }
+  partition.distortion = std::max(0.0, 0.5 * (weighted_log_determinants - weighted_log_determinants_));
+}
+
+template <int D>
+KLPartition<D> KLProblem<D>::run(std::vector<Gaussian<D>> references, const KLKMeansOptions& options) const {
+  KLPartition<D> partition;
+  partition.references = std::move(references);
+  partition.converged = false;
+  double distortion_before = std::numeric_limits<double>::infinity();
+  std::vector<int> labels;
+  while (!partition.converged && partition.iterations < options.max_iterations) {
+    assign(partition.references, labels);
+    partition.converged = labels == partition.labels;
+    if (partition.converged) break;
+    partition.labels.swap(labels);
+    update(partition);
+    ++partition.iterations;
+    partition.converged = distortion_before - partition.distortion < options.tolerance * distortion_before;
+    distortion_before = partition.distortion;
+  }
+  return partition;
+}
+
+template <int D>
+KLPartition<D> KLProblem<D>::oneCluster() const {
+  KLPartition<D> partition;
+  partition.references.resize(1);
+  partition.labels.assign(size(), 0);
+  update(partition);
+  return partition;
+}
+
+template <int D>
+KLClustering<D> KLProblem<D>::eachItsOwn() const {
+  KLClustering<D> clustering;
+  clustering.references = data_;
+  for (std::size_t j = 0; j < size(); ++j) clustering.labels.push_back(static_cast<int>(j));
+  return clustering;
+}
+
+template <int D>
+KLClustering<D> KLProblem<D>::finish(const KLPartition<D>& partition) const {
+  KLClustering<D> clustering;
+  clustering.labels = partition.labels;
+  clustering.distortion = partition.distortion;
+  clustering.iterations = partition.iterations;
+  clustering.converged = partition.converged;
+  std::vector<std::vector<Gaussian<D>>> members(partition.references.size());
+  for (std::size_t c = 0; c < members.size(); ++c) members[c].reserve(static_cast<std::size_t>(partition.counts[c]));
+  for (std::size_t j = 0; j < size(); ++j) members[static_cast<std::size_t>(partition.labels[j])].push_back(data_[j]);
+  for (const std::vector<Gaussian<D>>& parts : members) clustering.references.push_back(merge(parts));
+  return clustering;
+}
+
+template class KLProblem<2>;
+template class KLProblem<3>;
+
+}  // namespace gaussmap

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+
+#include "gaussmap/gaussian/gaussian.h"
+
+namespace gaussmap {
+
+/// Cholesky factorisation of one small covariance, unrolled by the compiler: k-means factorises a matrix per datum
+/// and reference, and Eigen's solvers spend most of such a call on deciding how to do it.
+template <int D>
+struct SmallCholesky {
+  Matrix<D> whitening = Matrix<D>::Zero();  ///< L^-1, lower triangle: |L^-1 (x - mu)| is the Mahalanobis distance
+  double root_determinant = 1.0;            ///< sqrt det Sigma
+  bool positive = true;                     ///< false: not positive definite, or not finite; the rest is void
+
+  /// Reads the lower triangle.
+  explicit SmallCholesky(const Matrix<D>& cov) {
+    Matrix<D> factor;
+    for (int j = 0; j < D; ++j) {
+      double pivot = cov(j, j);
+      for (int m = 0; m < j; ++m) pivot -= factor(j, m) * factor(j, m);
+      if (!(pivot > 0.0)) positive = false;
+      factor(j, j) = std::sqrt(pivot);
+      for (int i = j + 1; i < D; ++i) {
+        double sum = cov(i, j);
+        for (int m = 0; m < j; ++m) sum -= factor(i, m) * factor(j, m);
+        factor(i, j) = sum / factor(j, j);
+      }
+      root_determinant *= factor(j, j);
+    }
+    for (int j = 0; j < D; ++j) {
+      whitening(j, j) = 1.0 / factor(j, j);
+      for (int i = j + 1; i < D; ++i) {
+        double sum = 0.0;
+        for (int m = j; m < i; ++m) sum -= factor(i, m) * whitening(m, j);
+        whitening(i, j) = sum / factor(i, i);
+      }
+    }
+    positive = positive && root_determinant > 0.0 && std::isfinite(root_determinant) && whitening.allFinite();
+  }
+
+  double logDeterminant() const { return 2.0 * std::log(root_determinant); }
+  Matrix<D> inverse() const { return whitening.transpose().lazyProduct(whitening); }
+};
+
+}  // namespace gaussmap

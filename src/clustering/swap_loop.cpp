@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swap_loop.h"
+
+#include <limits>
+
+namespace gaussmap {
+namespace {
+
+// A swap must pay by more than the rounding of the distortion.
+constexpr double kLeastGain = 1e-9;
+
+/// The datum of largest distortion: lines 8 to 13.
+struct Worst {
+  std::size_t index;
+  std::size_t cluster;  // c_max
+  double distance;      // d_max [nat]
+};
+
+template <int D>
+Worst worstDatum(const KLProblem<D>& problem, const KLPartition<D>& partition, WorstDatum rule) {
+  const Eigen::VectorXd distances = problem.ownDistances(partition);
+  Eigen::Index index = 0;  // the first of several
+  if (rule == WorstDatum::Distance)
+    distances.maxCoeff(&index);
+  else
+    distances.cwiseProduct(problem.weights()).maxCoeff(&index);
+  const auto j = static_cast<std::size_t>(index);
+  return {j, static_cast<std::size_t>(partition.labels[j]), distances(index)};
+}
+
+template <int D>
+Gaussian<D> seedAt(const KLProblem<D>& problem, const KLPartition<D>& partition, const Worst& worst, ClusterSeed rule) {
+  Gaussian<D> seed = problem.datum(worst.index);
+  if (rule == ClusterSeed::ParentCovariance) seed.cov = partition.references[worst.cluster].cov;
+  return seed;
+}
+
+/// The two closest references: lines 14, 15.
+struct ClosestPair {
+  std::size_t first, second;
+  double distance;  // d_min [nat]
+};
+
+template <int D>
+ClosestPair closestPair(const std::vector<Gaussian<D>>& references) {
+  const Eigen::MatrixXd distances = KLProblem<D>::distancesBetween(references);
+  ClosestPair pair{0, 1, std::numeric_limits<double>::infinity()};
+  for (Eigen::Index u = 0; u < distances.rows(); ++u)
+    for (Eigen::Index v = 0; v < distances.cols(); ++v)
+      if (u != v && distances(u, v) < pair.distance)
+        pair = {static_cast<std::size_t>(u), static_cast<std::size_t>(v), distances(u, v)};
+  return pair;
+}
+
+/// The reference that a swap takes away: lines 16 to 22. The test is the printed one, d_max < d_min. The text
+/// ("because of its short distance to a different cluster with more elements") would suggest d_min < d_max, but that is
+/// worse: cells of real scans, k = 2 ... 12 by insertion, distortion at k = 12 over that at k = 1 (no swaps at all in
+/// brackets), printed against suggested,
+///   outdoor lidar, 0.1 m in 1 m     0.538 / 0.544 (0.554)      in 10 m  0.651 / 0.657 (0.655)
+///   RGB-D office, 0.02 m in 0.2 m   0.426 / 0.431 (0.456)      in 2 m   0.641 / 0.657 (0.665)
+///   indoor laser, 0.1 m in 1 m      0.446 / 0.453 (0.481)      in 10 m  0.599 / 0.594 (0.600)
+/// with 0.66 against 0.63 accepted swaps a run in the same time. The closest pair is seldom the right one to thin out
+/// and is tried again and again; most of the strength of the swaps is in the random draw.
+template <int D>
+std::size_t leastNeeded(const KLPartition<D>& partition, const Worst& worst, Random& random) {
+  const ClosestPair pair = closestPair(partition.references);
+  if (worst.distance < pair.distance)
+    return partition.counts[pair.second] < partition.counts[pair.first] ? pair.second : pair.first;
+  const std::size_t drawn = random.below(partition.references.size() - 1);
+  return drawn < worst.cluster ? drawn : drawn + 1;
+}
+
+}  // namespace
+
+template <int D>
+KLPartition<D> insertSeed(const KLProblem<D>& problem, const KLPartition<D>& partition,
+                          const KLKMeansOptions& options) {
+  std::vector<Gaussian<D>> references = partition.references;
+  references.push_back(
+      seedAt(problem, partition, worstDatum(problem, partition, options.worst_rule), options.seed_rule));
+  return problem.run(std::move(references), options);
+}
+
+template <int D>
+int swapLoop(const KLProblem<D>& problem, const KLKMeansOptions& options, Random& random, KLPartition<D>& partition) {
+  int swaps = 0;
+  for (; swaps < options.max_swaps && partition.references.size() > 1; ++swaps) {
+    const Worst worst = worstDatum(problem, partition, options.worst_rule);
+    std::vector<Gaussian<D>> references = partition.references;
+    references[leastNeeded(partition, worst, random)] = seedAt(problem, partition, worst, options.seed_rule);
+    KLPartition<D> swapped = problem.run(std::move(references), options);
+    swapped.iterations += partition.iterations;
+    const bool accepted = swapped.distortion < partition.distortion * (1.0 - kLeastGain) &&
+                          swapped.references.size() >= partition.references.size();
+    if (!accepted) {
+      partition.iterations = swapped.iterations;
+      break;
+    }
+    partition = std::move(swapped);
+  }
+  return swaps;
+}
+
+#define GAUSSMAP_INSTANTIATE(D)                                                                              \
+  template KLPartition<D> insertSeed<D>(const KLProblem<D>&, const KLPartition<D>&, const KLKMeansOptions&); \
+  template int swapLoop<D>(const KLProblem<D>&, const KLKMeansOptions&, Random&, KLPartition<D>&);
+GAUSSMAP_INSTANTIATE(2)
+GAUSSMAP_INSTANTIATE(3)
+#undef GAUSSMAP_INSTANTIATE
+
+}  // namespace gaussmap

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <cstdio>
+#include <map>
+#include <string>
+#include <stdexcept>
+
+#include "gaussmap/io/map_pcd.h"
+
+namespace gaussmap {
+namespace {
+
+constexpr double kOriginStep = 1024.0;  // [m]
+
+/// Zero where floats resolve a thousandth of a finest cell everywhere in the map.
+Eigen::Vector3d recordOrigin(const GaussianMap<3>& map) {
+  const int coarsest = map.scales() - 1;
+  if (map.empty()) return Eigen::Vector3d::Zero();
+  const double half = 0.5 * map.grid().side(coarsest);
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (const CellKey<3>& key : map.scale(coarsest).keys) {
+    const Eigen::Vector3d centre = map.grid().centre(key, coarsest);
+    low = low.cwiseMin((centre.array() - half).matrix());
+    high = high.cwiseMax((centre.array() + half).matrix());
+  }
+  const double farthest = std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
+  if (farthest * std::numeric_limits<float>::epsilon() <= 1e-3 * map.grid().side(0)) return Eigen::Vector3d::Zero();
+  return ((0.5 / kOriginStep) * (low + high)).array().round().matrix() * kOriginStep;
+}
+
+GaussianRecord toRecord(const GaussianMap<3>& map, std::size_t index, int scale, const Eigen::Vector3d& origin) {
+  const CellKey<3>& key = map.scale(scale).keys[map.cellOf(index, scale)];
+  const Gaussian<3> gaussian = map.localGaussian(index, scale);
+  const Eigen::Vector3f mean = (gaussian.mean + (map.grid().centre(key, scale) - origin)).cast<float>();
+  const Eigen::Matrix3f cov = gaussian.cov.cast<float>();
+  return {{mean.x(), mean.y(), mean.z()},
+          {cov(0, 0), cov(0, 1), cov(0, 2), cov(1, 1), cov(1, 2), cov(2, 2)},
+          static_cast<float>(gaussian.weight),
+          kMaxOccupancy,
+          static_cast<float>(map.grid().side(scale)),
+          scale,
+          key};
+}
+
+Matrix<3> positiveDefinite(const GaussianRecord& record) {
+  const auto& c = record.covariance;
+  Eigen::Matrix3d cov;
+  cov << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
+  if (!cov.allFinite()) throw std::invalid_argument("a covariance that is not finite");
+  if (Eigen::LLT<Eigen::Matrix3d>(cov).info() == Eigen::Success) return cov;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(cov);
+  const double largest = solver.eigenvalues().maxCoeff();
+  if (!(largest > 0.0)) throw std::invalid_argument("a covariance without any extent");
+  const Eigen::Vector3d lifted = solver.eigenvalues().cwiseMax(1e-6 * largest);
+  return solver.eigenvectors() * lifted.asDiagonal() * solver.eigenvectors().transpose();
+}
+
+/// The shortest decimal that the float stands for: 0.1, not 0.100000001490116.
+double asWritten(float value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", static_cast<double>(value));
+  const double decimal = std::stod(text);
+  return static_cast<float>(decimal) == value ? decimal : static_cast<double>(value);
+}
+
+MapOptions optionsOf(const std::map<int, float>& sides) {
+  MapOptions options;
+  const int finest = sides.begin()->first;
+  options.resolution = asWritten(sides.begin()->second);
+  options.scales = static_cast<int>(sides.size());
+  if (sides.size() > 1) {
+    const double ratio = static_cast<double>(std::next(sides.begin())->second) / static_cast<double>(sides.begin()->second);
+    options.ratio = static_cast<int>(std::lround(std::clamp(ratio, 0.0, 1e6)));
+  }
+  const Grid<3> grid(options);
+  int expected = finest;
+  for (const auto& [scale, side] : sides) {
+    if (scale != expected++ || std::abs(static_cast<double>(side) / grid.side(scale - finest) - 1.0) > 1e-5)
+      throw std::invalid_argument("its scales and cell sides describe no grid of one ratio");
+  }
+  return options;
+}
+
+using CellGroups = std::map<CellKey<3>, std::vector<Gaussian<3>>>;  // means about the centre of the cell
+
+/// The nearest cluster of the cell above, means about the centre of the parent.
+std::size_t nearestParent(Gaussian<3> child, const Vector<3>& centre_in_parent, const std::vector<Gaussian<3>>& clusters,
+                          std::size_t first, std::size_t last) {
+  child.mean += centre_in_parent;
+  std::size_t best = first;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = first; i < last; ++i) {
+    const double divergence = klDivergence<3>(child, clusters[i]);
+    if (divergence < least) {
+      least = divergence;
+      best = i;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+GaussianRecords toRecords(const GaussianMap<3>& map, std::optional<int> scale) {
+  if (scale && (*scale < 0 || *scale >= map.scales()))
+    throw std::out_of_range("scale " + std::to_string(*scale) + ": the map has the scales 0 to " +
+                            std::to_string(map.scales() - 1));
+  GaussianRecords all{{}, recordOrigin(map)};
+  for (int s = map.scales() - 1; s >= 0; --s)
+    if (!scale || *scale == s)
+      for (std::size_t i = 0; i < map.gaussianCount(s); ++i) all.records.push_back(toRecord(map, i, s, all.origin));
+  return all;
+}
+
+GaussianMap<3> fromRecords(const GaussianRecords& all) {
+  if (all.records.empty()) throw std::invalid_argument("no Gaussian in it");
+  std::map<int, float> sides;
+  for (const GaussianRecord& record : all.records) {
+    if (!(record.weight > 0.0f) || !std::isfinite(record.weight))
+      throw std::invalid_argument("a Gaussian of weight " + std::to_string(record.weight));
+    if (sides.emplace(record.scale, record.cell_side).first->second != record.cell_side)
+      throw std::invalid_argument("cells of different sides at scale " + std::to_string(record.scale));
+    if (sides.size() > 64) throw std::invalid_argument("more than 64 scales");
+  }
+  const MapOptions options = optionsOf(sides);
+  const Grid<3> grid(options);
+  const int finest = sides.begin()->first;
+
+  std::vector<CellGroups> cells(sides.size());
+  for (const GaussianRecord& record : all.records) {
+    const int scale = record.scale - finest;
+    const double half = 0.5 * grid.side(scale);
+    Gaussian<3> gaussian;
+    const Eigen::Vector3d mean(record.mean[0], record.mean[1], record.mean[2]);
+    gaussian.mean = mean + (all.origin - grid.centre(record.cell, scale));
+    if (!(gaussian.mean.cwiseAbs().maxCoeff() <= 1.1 * half))
+      throw std::invalid_argument("a mean outside its cell " + toString<3>(record.cell));
+    gaussian.mean = gaussian.mean.cwiseMax(-half).cwiseMin(half);
+    gaussian.cov = positiveDefinite(record);
+    gaussian.weight = static_cast<double>(record.weight);
+    cells[static_cast<std::size_t>(scale)][record.cell].push_back(gaussian);
+  }
+
+  std::vector<MapScale<3>> scales(sides.size());
+  for (int s = 0; s < options.scales; ++s) {
+    MapScale<3>& scale = scales[static_cast<std::size_t>(s)];
+    const CellGroups& groups = cells[static_cast<std::size_t>(s)];
+    std::vector<CellKey<3>> keys;
+    for (const auto& [key, group] : groups) keys.push_back(key);
+    scale.first_gaussian.push_back(0);
+    for (const std::uint32_t from : keyOrder<3>(keys, options.ratio, options.scales - 1 - s)) {
+      const std::vector<Gaussian<3>>& gaussians = groups.at(keys[from]);
+      scale.keys.push_back(keys[from]);
+      scale.gaussians.insert(scale.gaussians.end(), gaussians.begin(), gaussians.end());
+      scale.first_gaussian.push_back(static_cast<std::uint32_t>(scale.gaussians.size()));
+    }
+    if (s == 0) continue;
+    MapScale<3>& finer = scales[static_cast<std::size_t>(s) - 1];
+    std::size_t cell = 0;
+    for (std::size_t child = 0; child < finer.keys.size(); ++child) {
+      const CellKey<3> parent = grid.ancestor(finer.keys[child], s - 1, s);
+      if (child == 0 || parent != scale.keys[cell]) {
+        cell = scale.first_child.size();
+        if (cell >= scale.keys.size() || scale.keys[cell] != parent)
+          throw std::invalid_argument("cell " + toString<3>(parent) + " of scale " + std::to_string(s) + " is missing");
+        scale.first_child.push_back(static_cast<std::uint32_t>(child));
+      }
+      for (std::size_t i = finer.first_gaussian[child]; i < finer.first_gaussian[child + 1]; ++i)
+        finer.parent.push_back(static_cast<std::uint32_t>(
+            nearestParent(finer.gaussians[i], grid.centreInParent(finer.keys[child], s - 1), scale.gaussians,
+                          scale.first_gaussian[cell], scale.first_gaussian[cell + 1])));
+    }
+    scale.first_child.push_back(static_cast<std::uint32_t>(finer.keys.size()));
+  }
+  for (MapScale<3>& scale : scales)
+    if (scale.gaussians.size() == scale.keys.size()) scale.first_gaussian.clear();
+  return GaussianMap<3>(options, std::move(scales));
+}
+
+}  // namespace gaussmap

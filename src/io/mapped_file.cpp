@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/mapped_file.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+
+#include "gaussmap/io/error.h"
+
+namespace gaussmap {
+namespace {
+
+[[noreturn]] void throwSystemError(const std::filesystem::path& path, const std::string& what) {
+  throw FileError(path, what + ": " + std::generic_category().message(errno));
+}
+
+void requireRegular(const std::filesystem::path& path, const struct stat& status) {
+  if (S_ISDIR(status.st_mode)) throw FileError(path, "is a directory, not a file");
+  if (!S_ISREG(status.st_mode)) throw FileError(path, "is a pipe or a device: save it as a file first");
+}
+
+class Descriptor {
+ public:
+  // Non-blocking, because a file may have become a pipe since it was looked at.
+  explicit Descriptor(const std::filesystem::path& path)
+      : number_(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
+    if (number_ < 0) throwSystemError(path, "cannot be opened");
+  }
+  ~Descriptor() { close(number_); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int number() const { return number_; }
+
+ private:
+  int number_;
+};
+
+}  // namespace
+
+MappedFile::MappedFile(const std::filesystem::path& path) {
+  // Looked at before it is opened: opening alone may wake the other end of a pipe or move a device.
+  struct stat status;
+  if (stat(path.c_str(), &status) != 0) throwSystemError(path, "cannot be opened");
+  requireRegular(path, status);
+  const Descriptor descriptor(path);
+  if (fstat(descriptor.number(), &status) != 0) throwSystemError(path, "cannot be read");
+  requireRegular(path, status);
+  const auto size = static_cast<std::size_t>(status.st_size);
+  if (size == 0) return;
+  void* const address = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor.number(), 0);
+  if (address == MAP_FAILED) throwSystemError(path, "cannot be read");
+  bytes_ = {static_cast<const char*>(address), size};
+}
+
+MappedFile::~MappedFile() {
+  if (!bytes_.empty()) munmap(const_cast<char*>(bytes_.data()), bytes_.size());
+}
+
+}  // namespace gaussmap

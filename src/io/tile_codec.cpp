@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/tile_codec.h"
+
+#include <zstd.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <stdexcept>
+
+namespace gaussmap {
+namespace {
+
+constexpr std::uint64_t kMostExpansion = 4096;
+constexpr std::uint64_t kHasMoments = 1, kHasLabels = 2;
+
+std::uint64_t bitsOf(double value) {
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+
+double fromBits(std::uint64_t bits) {
+  double value = 0.0;
+  std::memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+/// A column: first the lowest byte of all its numbers, then the next. Neighbours in a map differ in the low bytes only.
+class ColumnWriter {
+ public:
+  explicit ColumnWriter(std::string& bytes) : bytes_(bytes) {}
+  template <typename ValueAt>
+  void write(std::size_t count, int width, const ValueAt& value) {
+    const std::size_t begin = bytes_.size();
+    bytes_.resize(begin + count * static_cast<std::size_t>(width));
+    char* out = bytes_.data() + begin;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint64_t bits = value(i);
+      for (int byte = 0; byte < width; ++byte)
+        out[static_cast<std::size_t>(byte) * count + i] = static_cast<char>(bits >> (8 * byte));
+    }
+  }
+
+ private:
+  std::string& bytes_;
+};
+
+class ColumnReader {
+ public:
+  ColumnReader(const char* bytes, std::size_t size) : next_(bytes), left_(size) {}
+  template <typename Take>
+  void read(std::size_t count, int width, const Take& take) {
+    const std::size_t size = count * static_cast<std::size_t>(width);
+    if (size > left_) throw std::runtime_error("shorter than its cells need");
+    for (std::size_t i = 0; i < count; ++i) {
+      std::uint64_t bits = 0;
+      for (int byte = 0; byte < width; ++byte)
+        bits |= std::uint64_t{static_cast<unsigned char>(next_[static_cast<std::size_t>(byte) * count + i])}
+                << (8 * byte);
+      take(i, bits);
+    }
+    next_ += size;
+    left_ -= size;
+  }
+  std::size_t left() const { return left_; }
+
+ private:
+  const char* next_;
+  std::size_t left_;
+};
+
+/// The numbers in front of the columns, 8 bytes each.
+template <int D>
+std::vector<std::uint64_t> headerOf(const TileAddress<D>& address, const MapOptions& options, std::size_t cells,
+                                    std::size_t gaussians, std::uint64_t flags) {
+  std::vector<std::uint64_t> header = {std::uint64_t(D),
+                                       bitsOf(options.resolution),
+                                       bitsOf(options.noise),
+                                       std::uint64_t(options.ratio),
+                                       std::uint64_t(options.scales),
+                                       std::uint64_t(address.scale),
+                                       cells,
+                                       gaussians,
+                                       flags};
+  for (std::int32_t coordinate : address.tile) header.push_back(static_cast<std::uint32_t>(coordinate));
+  return header;
+}
+
+constexpr std::size_t kCellsSlot = 6, kGaussiansSlot = 7, kFlagsSlot = 8;
+
+template <int D>
+std::int64_t tileOrigin(const TileAddress<D>& address, std::size_t axis) {
+  return std::int64_t{address.tile[axis]} * address.span;
+}
+
+template <int D>
+void checkMoments(const CellMoments<D>& moments) {
+  constexpr std::int64_t kMostPoints = (std::int64_t{1} << 33) - 1;
+  if (moments.count <= 0 || moments.count > kMostPoints) throw std::runtime_error("a cell with an impossible count");
+  for (std::int64_t sum : moments.sum)
+    if (std::abs(static_cast<double>(sum)) > 0x1.0p15 * static_cast<double>(moments.count))
+      throw std::runtime_error("a cell whose points lie outside it");
+  for (std::int64_t product : moments.product)
+    if (std::abs(static_cast<double>(product)) > 0x1.0p30 * static_cast<double>(moments.count))
+      throw std::runtime_error("a cell whose points lie outside it");
+}
+
+template <int D>
+void checkPositiveDefinite(const Matrix<D>& cov) {
+  if (!cov.allFinite() || Eigen::LLT<Matrix<D>>(cov).info() != Eigen::Success)
+    throw std::runtime_error("a covariance that is not positive definite");
+}
+
+/// Calls body(row, column, slot) over the upper triangle.
+template <int D, typename Body>
+void forTriangle(const Body& body) {
+  int slot = 0;
+  for (int row = 0; row < D; ++row)
+    for (int column = row; column < D; ++column) body(row, column, slot++);
+}
+
+std::string compress(const std::string& raw, int level) {
+  const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context(ZSTD_createCCtx(), ZSTD_freeCCtx);
+  if (!context) throw std::bad_alloc();
+  ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, level);
+  ZSTD_CCtx_setParameter(context.get(), ZSTD_c_checksumFlag, 1);
+  std::string packed(ZSTD_compressBound(raw.size()), '\0');
+  const std::size_t size = ZSTD_compress2(context.get(), packed.data(), packed.size(), raw.data(), raw.size());
+  if (ZSTD_isError(size)) throw std::runtime_error(std::string("cannot be compressed: ") + ZSTD_getErrorName(size));
+  packed.resize(size);
+  return packed;
+}
+
+std::string decompress(std::string_view packed) {
+  const unsigned long long size = ZSTD_getFrameContentSize(packed.data(), packed.size());
+  if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN || size > kMostExpansion * packed.size())
+    throw std::runtime_error("not a compressed tile");
+  std::string raw(static_cast<std::size_t>(size), '\0');
+  const std::size_t got = ZSTD_decompress(raw.data(), raw.size(), packed.data(), packed.size());
+  if (ZSTD_isError(got)) throw std::runtime_error(ZSTD_getErrorName(got));
+  if (got != raw.size()) throw std::runtime_error("shorter than it says");
+  return raw;
+}
+
+}  // namespace
+
+template <int D>
+std::string encodeTile(const Tile<D>& tile, const TileAddress<D>& address, const MapOptions& options, int level) {
+  const std::size_t cells = tile.keys.size();
+  const std::size_t gaussians = tile.moments.empty() ? tile.gaussians.size() : cells;
+  const std::uint64_t flags = (tile.moments.empty() ? 0 : kHasMoments) | (tile.labels.empty() ? 0 : kHasLabels);
+  std::string raw;
+  ColumnWriter columns(raw);
+  for (std::uint64_t number : headerOf<D>(address, options, cells, gaussians, flags))
+    columns.write(1, 8, [&](std::size_t) { return number; });
+  for (std::size_t axis = 0; axis < D; ++axis)
+    columns.write(cells, 4, [&](std::size_t i) { return std::uint64_t(tile.keys[i][axis] - tileOrigin<D>(address, axis)); });
+  columns.write(cells, 4, [&](std::size_t i) { return std::uint64_t{tile.counts[i]}; });
+  if (flags & kHasMoments) {
+    const std::vector<CellMoments<D>>& moments = tile.moments;
+    columns.write(cells, 8, [&](std::size_t i) { return std::uint64_t(moments[i].count); });
+    for (std::size_t axis = 0; axis < D; ++axis)
+      columns.write(cells, 8, [&](std::size_t i) { return std::uint64_t(moments[i].sum[axis]); });
+    for (std::size_t slot = 0; slot < moments.front().product.size(); ++slot)
+      columns.write(cells, 8, [&](std::size_t i) { return std::uint64_t(moments[i].product[slot]); });
+  } else {
+    const std::vector<Gaussian<D>>& values = tile.gaussians;
+    columns.write(gaussians, 8, [&](std::size_t i) { return bitsOf(values[i].weight); });
+    for (int axis = 0; axis < D; ++axis)
+      columns.write(gaussians, 8, [&](std::size_t i) { return bitsOf(values[i].mean(axis)); });
+    forTriangle<D>([&](int row, int column, int) {
+      columns.write(gaussians, 8, [&](std::size_t i) { return bitsOf(values[i].cov(row, column)); });
+    });
+  }
+  if (flags & kHasLabels) columns.write(gaussians, 4, [&](std::size_t i) { return std::uint64_t{tile.labels[i]}; });
+  return compress(raw, level);
+}
+
+template <int D>
+Tile<D> decodeTile(std::string_view bytes, const TileAddress<D>& address, const MapOptions& options) {
+  const std::string raw = decompress(bytes);
+  ColumnReader columns(raw.data(), raw.size());
+  std::vector<std::uint64_t> header(headerOf<D>(address, options, 0, 0, 0).size());
+  for (std::uint64_t& number : header) columns.read(1, 8, [&](std::size_t, std::uint64_t bits) { number = bits; });
+  const std::uint64_t cells = header[kCellsSlot], gaussians = header[kGaussiansSlot], flags = header[kFlagsSlot];
+  if (header != headerOf<D>(address, options, cells, gaussians, flags))
+    throw std::runtime_error("belongs to another place or another map");
+  const bool has_moments = flags & kHasMoments, has_labels = flags & kHasLabels;
+  constexpr std::uint64_t kNumbers = 1 + D + D * (D + 1) / 2;
+  constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
+  if (cells == 0 || cells > kMost || gaussians < cells || gaussians > kMost || (has_moments && gaussians != cells) ||
+      columns.left() != cells * 4 * (D + 1) + gaussians * (8 * kNumbers + (has_labels ? 4 : 0)))
+    throw std::runtime_error("its size does not fit its cells");
+
+  Tile<D> tile;
+  tile.keys.resize(cells);
+  tile.counts.resize(cells);
+  for (std::size_t axis = 0; axis < D; ++axis)
+    columns.read(cells, 4, [&](std::size_t i, std::uint64_t bits) {
+      const std::int64_t coordinate = tileOrigin<D>(address, axis) + static_cast<std::int64_t>(bits);
+      if (bits >= static_cast<std::uint64_t>(address.span) || coordinate != static_cast<std::int32_t>(coordinate))
+        throw std::runtime_error("a cell that lies outside it");
+      tile.keys[i][axis] = static_cast<std::int32_t>(coordinate);
+    });
+  std::uint64_t counted = 0;
+  columns.read(cells, 4, [&](std::size_t i, std::uint64_t bits) {
+    tile.counts[i] = static_cast<std::uint32_t>(bits);
+    counted += bits;
+    if (bits == 0 || (has_moments && bits != 1)) throw std::runtime_error("a cell with a wrong number of Gaussians");
+  });
+  if (counted != gaussians) throw std::runtime_error("cells and Gaussians do not match");
+  if (has_moments) {
+    tile.moments.resize(cells);
+    columns.read(cells, 8, [&](std::size_t i, std::uint64_t bits) { tile.moments[i].count = std::int64_t(bits); });
+    for (std::size_t axis = 0; axis < D; ++axis)
+      columns.read(cells, 8, [&](std::size_t i, std::uint64_t bits) { tile.moments[i].sum[axis] = std::int64_t(bits); });
+    for (std::size_t slot = 0; slot < CellMoments<D>().product.size(); ++slot)
+      columns.read(cells, 8,
+                   [&](std::size_t i, std::uint64_t bits) { tile.moments[i].product[slot] = std::int64_t(bits); });
+    for (const CellMoments<D>& moments : tile.moments) {
+      checkMoments<D>(moments);
+      checkPositiveDefinite<D>(moments.gaussian(options.resolution, options.noise).cov);
+    }
+  } else {
+    tile.gaussians.resize(gaussians);
+    columns.read(gaussians, 8, [&](std::size_t i, std::uint64_t bits) { tile.gaussians[i].weight = fromBits(bits); });
+    for (int axis = 0; axis < D; ++axis)
+      columns.read(gaussians, 8,
+                   [&](std::size_t i, std::uint64_t bits) { tile.gaussians[i].mean(axis) = fromBits(bits); });
+    forTriangle<D>([&](int row, int column, int) {
+      columns.read(gaussians, 8, [&](std::size_t i, std::uint64_t bits) {
+        tile.gaussians[i].cov(row, column) = tile.gaussians[i].cov(column, row) = fromBits(bits);
+      });
+    });
+    for (const Gaussian<D>& gaussian : tile.gaussians) checkPositiveDefinite<D>(gaussian.cov);
+  }
+  if (has_labels) {
+    tile.labels.resize(gaussians);
+    columns.read(gaussians, 4, [&](std::size_t i, std::uint64_t bits) { tile.labels[i] = std::uint32_t(bits); });
+  }
+  return tile;
+}
+
+#define GAUSSMAP_INSTANTIATE(D)                                                                             \
+  template std::string encodeTile<D>(const Tile<D>&, const TileAddress<D>&, const MapOptions&, int);        \
+  template Tile<D> decodeTile<D>(std::string_view, const TileAddress<D>&, const MapOptions&);
+GAUSSMAP_INSTANTIATE(2)
+GAUSSMAP_INSTANTIATE(3)
+#undef GAUSSMAP_INSTANTIATE
+
+}  // namespace gaussmap

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gaussmap/map/queries.h"
+
+#include <cmath>
+#include <limits>
+#include <queue>
+#include <tuple>
+
+namespace gaussmap {
+namespace {
+
+/// Calls visit(cell) for every occupied cell of the 3^D cells around a key.
+template <int D, typename Visit>
+void forEachNeighbour(const GaussianMap<D>& map, const CellKey<D>& centre, int scale, const Visit& visit) {
+  int count = 1;
+  for (int axis = 0; axis < D; ++axis) count *= 3;
+  for (int code = 0; code < count; ++code) {
+    CellKey<D> key = centre;
+    int digits = code;
+    bool fits = true;
+    for (std::size_t axis = 0; axis < D; ++axis, digits /= 3) {
+      const std::int64_t shifted = std::int64_t{key[axis]} + digits % 3 - 1;
+      fits &= shifted == static_cast<std::int32_t>(shifted);
+      key[axis] = static_cast<std::int32_t>(shifted);
+    }
+    if (!fits) continue;
+    if (const auto cell = map.find(key, scale)) visit(*cell);
+  }
+}
+
+/// Distance from a point to the box of a cell [m], 0 inside.
+template <int D>
+double distanceToCell(const GaussianMap<D>& map, const Vector<D>& point, std::size_t cell, int scale) {
+  const Vector<D> offset = point - map.grid().centre(map.scale(scale).keys[cell], scale);
+  return (offset.cwiseAbs().array() - 0.5 * map.grid().side(scale)).max(0.0).matrix().norm();
+}
+
+/// Gaussians of the cell nearest in the sense of the mean, if nearer than what is known.
+template <int D>
+void improve(const GaussianMap<D>& map, const Vector<D>& point, std::size_t cell, int scale, Nearest<D>& best) {
+  const Vector<D> local = point - map.grid().centre(map.scale(scale).keys[cell], scale);
+  const IndexRange range = map.gaussiansOf(cell, scale);
+  for (std::size_t i = range.first; i < range.last; ++i) {
+    const double distance = (map.localGaussian(i, scale).mean - local).norm();
+    if (std::tie(distance, i) < std::tie(best.distance, best.index)) best = {i, distance};
+  }
+}
+
+}  // namespace
+
+template <int D>
+double logLikelihood(const GaussianMap<D>& map, const Vector<D>& point, int scale) {
+  const CellKey<D> key = map.grid().keyOf(point, scale);
+  std::vector<double> terms;
+  forEachNeighbour<D>(map, key, scale, [&](std::size_t cell) {
+    const Vector<D> local = point - map.grid().centre(map.scale(scale).keys[cell], scale);
+    const IndexRange range = map.gaussiansOf(cell, scale);
+    for (std::size_t i = range.first; i < range.last; ++i) {
+      const Gaussian<D> gaussian = map.localGaussian(i, scale);
+      terms.push_back(std::log(gaussian.weight) + logDensity<D>(local, gaussian));
+    }
+  });
+  if (terms.empty()) return -std::numeric_limits<double>::infinity();
+  double largest = terms.front();
+  for (double term : terms) largest = std::max(largest, term);
+  double sum = 0.0;
+  for (double term : terms) sum += std::exp(term - largest);
+  return largest + std::log(sum) - std::log(map.weight(scale));
+}
+
+template <int D>
+std::optional<Nearest<D>> nearest(const GaussianMap<D>& map, const Vector<D>& point, int scale) {
+  if (map.empty()) return std::nullopt;
+  Nearest<D> best{std::numeric_limits<std::size_t>::max(), std::numeric_limits<double>::infinity()};
+  forEachNeighbour<D>(map, map.grid().keyOf(point, scale), scale,
+                      [&](std::size_t cell) { improve<D>(map, point, cell, scale, best); });
+  // Nothing outside the neighbouring cells is nearer than the width of a cell.
+  if (best.distance < map.grid().side(scale)) return best;
+
+  // Best first from the coarsest scale down. A mean lies in its cell, up to the rounding that a map allows.
+  struct Candidate {
+    double bound;
+    int scale;
+    std::size_t cell;
+    bool operator<(const Candidate& other) const { return bound > other.bound; }
+  };
+  std::priority_queue<Candidate> open;
+  const int coarsest = map.scales() - 1;
+  for (std::size_t cell = 0; cell < map.cellCount(coarsest); ++cell)
+    open.push({distanceToCell<D>(map, point, cell, coarsest), coarsest, cell});
+  const double slack = 2e-3 * map.grid().side(scale);
+  for (; !open.empty() && open.top().bound <= best.distance + slack;) {
+    const Candidate next = open.top();
+    open.pop();
+    if (next.scale == scale) {
+      improve<D>(map, point, next.cell, scale, best);
+      continue;
+    }
+    const IndexRange children = map.childCells(next.cell, next.scale);
+    for (std::size_t child = children.first; child < children.last; ++child)
+      open.push({distanceToCell<D>(map, point, child, next.scale - 1), next.scale - 1, child});
+  }
+  return best;
+}
+
+template <int D>
+std::optional<Vector<D>> normalAt(const GaussianMap<D>& map, const Vector<D>& point) {
+  for (int scale = 0; scale < map.scales(); ++scale) {
+    const auto cell = map.find(map.grid().keyOf(point, scale), scale);
+    if (!cell) continue;
+    const Vector<D> local = point - map.grid().centre(map.scale(scale).keys[*cell], scale);
+    const IndexRange range = map.gaussiansOf(*cell, scale);
+    Gaussian<D> chosen;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = range.first; i < range.last; ++i) {
+      const Gaussian<D> gaussian = map.localGaussian(i, scale);
+      const double distance = mahalanobisSquared<D>(local, gaussian) + logDeterminant<D>(gaussian.cov);  // eq. (2)
+      if (distance < least) {
+        least = distance;
+        chosen = gaussian;
+      }
+    }
+    if (chosen.weight < D + 1) continue;
+    const PrincipalAxes<D> axes = principalAxes<D>(chosen);
+    if (axes.variances(1) >= 16.0 * map.options().noise * map.options().noise) return axes.normal();
+  }
+  return std::nullopt;
+}
+
+#define GAUSSMAP_INSTANTIATE(D)                                                                       \
+  template double logLikelihood<D>(const GaussianMap<D>&, const Vector<D>&, int);                     \
+  template std::optional<Nearest<D>> nearest<D>(const GaussianMap<D>&, const Vector<D>&, int);        \
+  template std::optional<Vector<D>> normalAt<D>(const GaussianMap<D>&, const Vector<D>&);
+GAUSSMAP_INSTANTIATE(2)
+GAUSSMAP_INSTANTIATE(3)
+#undef GAUSSMAP_INSTANTIATE
+
+}  // namespace gaussmap

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gaussmap/mapping/build.h"
+
+#include <sstream>
+#include <stdexcept>
+
+#include "gaussmap/mapping/coarsen.h"
+
+namespace gaussmap {
+namespace {
+
+template <int D>
+GaussianMap<D> withCoarserScales(MapScale<D> finest, const Grid<D>& grid) {
+  std::vector<MapScale<D>> scales(static_cast<std::size_t>(grid.scales()));
+  scales.front() = std::move(finest);
+  for (std::size_t s = 1; s < scales.size(); ++s)
+    scales[s] = coarsen<D>(scales[s - 1], grid, static_cast<int>(s) - 1);
+  return GaussianMap<D>(grid.options(), std::move(scales));
+}
+
+}  // namespace
+
+template <int D>
+GaussianMap<D> build(const MomentGrid<D>& moments, const MapOptions& options) {
+  const Grid<D> grid(options);
+  if (moments.resolution() != options.resolution) {
+    std::ostringstream text;
+    text << "resolution = " << options.resolution << ": the moments were counted in cells of " << moments.resolution()
+         << " m";
+    throw std::invalid_argument(text.str());
+  }
+  std::vector<CellKey<D>> keys(moments.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = moments[i].key;
+  const std::vector<std::uint32_t> order = keyOrder<D>(keys, options.ratio, options.scales - 1);
+  MapScale<D> finest;
+  finest.keys.resize(keys.size());
+  finest.moments.resize(keys.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    finest.keys[i] = keys[order[i]];
+    finest.moments[i] = moments[order[i]].moments;
+  }
+  return withCoarserScales<D>(std::move(finest), grid);
+}
+
+template <int D>
+GaussianMap<D> build(const std::vector<Vector<D>>& points, const MapOptions& options) {
+  MomentGrid<D> moments(Grid<D>(options).options().resolution);
+  moments.addPoints(points);
+  return build<D>(moments, options);
+}
+
+template <int D>
+GaussianMap<D> build(const MapScale<D>& cells, const MapOptions& options) {
+  if (cells.keys.size() != cells.gaussians.size())
+    throw std::invalid_argument("a finest scale has one Gaussian in each cell");
+  MapScale<D> finest;
+  for (const std::uint32_t from : keyOrder<D>(cells.keys, options.ratio, options.scales - 1)) {
+    finest.keys.push_back(cells.keys[from]);
+    finest.gaussians.push_back(cells.gaussians[from]);
+  }
+  return withCoarserScales<D>(std::move(finest), Grid<D>(options));
+}
+
+#define GAUSSMAP_INSTANTIATE(D)                                                        \
+  template GaussianMap<D> build<D>(const MomentGrid<D>&, const MapOptions&);           \
+  template GaussianMap<D> build<D>(const std::vector<Vector<D>>&, const MapOptions&);  \
+  template GaussianMap<D> build<D>(const MapScale<D>&, const MapOptions&);
+GAUSSMAP_INSTANTIATE(2)
+GAUSSMAP_INSTANTIATE(3)
+#undef GAUSSMAP_INSTANTIATE
+
+}  // namespace gaussmap

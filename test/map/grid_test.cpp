@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gaussmap/map/grid.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace gaussmap {
+namespace {
+
+TEST(Grid, HasCellsTenTimesWiderAtEachScaleOfThePaper) {
+  const Grid<3> grid({0.1, 10, 3, 0.0});
+  EXPECT_DOUBLE_EQ(grid.side(0), 0.1);
+  EXPECT_DOUBLE_EQ(grid.side(1), 1.0);
+  EXPECT_DOUBLE_EQ(grid.side(2), 10.0);
+  EXPECT_DOUBLE_EQ(grid.options().noise, 0.005);
+}
+
+TEST(Grid, RoundsParentsDownAlsoBelowZero) {
+  const Grid<3> grid({0.1, 10, 3, 0.0});
+  EXPECT_EQ(grid.ancestor({-1, 0, 9}, 0, 1), (CellKey<3>{-1, 0, 0}));
+  EXPECT_EQ(grid.ancestor({-10, 10, -11}, 0, 1), (CellKey<3>{-1, 1, -2}));
+  EXPECT_EQ(grid.ancestor({-101, 99, 100}, 0, 2), (CellKey<3>{-2, 0, 1}));
+  const std::int32_t lowest = std::numeric_limits<std::int32_t>::min();
+  EXPECT_EQ(grid.ancestor({lowest, 0, 0}, 0, 1)[0], -214748365);
+}
+
+TEST(Grid, ParentOfTheParentIsTheGrandparent) {
+  const Grid<3> grid({0.1, 3, 4, 0.0});
+  Random random(1);
+  for (int i = 0; i < 10000; ++i) {
+    CellKey<3> key;
+    for (std::int32_t& coordinate : key) coordinate = static_cast<std::int32_t>(random.bits());
+    EXPECT_EQ(grid.ancestor(grid.ancestor(key, 0, 1), 1, 2), grid.ancestor(key, 0, 2));
+  }
+}
+
+TEST(Grid, CentresOfChildrenLieRoundTheCentreOfTheParent) {
+  const Grid<2> grid({0.5, 2, 2, 0.0});
+  EXPECT_EQ(grid.centre({-1, 3}, 0), (Vector<2>(-0.25, 1.75)));
+  EXPECT_EQ(grid.centreInParent({-1, 3}, 0), (Vector<2>(0.25, 0.25)));
+  EXPECT_EQ(grid.centre(grid.ancestor({-1, 3}, 0, 1), 1), (Vector<2>(-0.5, 1.5)));
+}
+
+TEST(Grid, CellOfItsCentreIsTheCell) {
+  const Grid<3> grid({0.1, 10, 3, 0.0});
+  Random random(2);
+  for (int i = 0; i < 10000; ++i) {
+    CellKey<3> key;
+    for (std::int32_t& coordinate : key) coordinate = static_cast<std::int32_t>(random.bits()) / 1000;
+    for (int scale = 0; scale < 3; ++scale) EXPECT_EQ(grid.keyOf(grid.centre(key, scale), scale), key);
+  }
+}
+
+TEST(Grid, RefusesPointsThatHaveNoCell) {
+  const Grid<3> grid({0.1, 10, 3, 0.0});
+  EXPECT_THROW(grid.keyOf({1e12, 0, 0}), std::out_of_range);
+  EXPECT_THROW(grid.keyOf({0, std::numeric_limits<double>::quiet_NaN(), 0}), std::out_of_range);
+  EXPECT_NO_THROW(grid.keyOf({2e8, -2e8, 0}));
+}
+
+TEST(Grid, RefusesOptionsThatMakeNoMapAndNamesThem) {
+  const auto messageFor = [](const MapOptions& options) -> std::string {
+    try {
+      const Grid<3> grid(options);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(messageFor({0.0, 10, 3, 0.0}).find("resolution"), std::string::npos);
+  EXPECT_NE(messageFor({-1.0, 10, 3, 0.0}).find("resolution"), std::string::npos);
+  EXPECT_NE(messageFor({0.1, 1, 3, 0.0}).find("ratio"), std::string::npos);
+  EXPECT_NE(messageFor({0.1, 10, 0, 0.0}).find("scales"), std::string::npos);
+  EXPECT_NE(messageFor({0.1, 10, 12, 0.0}).find("scales"), std::string::npos);
+  EXPECT_NE(messageFor({0.1, 10, 3, -0.1}).find("noise"), std::string::npos);
+  EXPECT_NE(messageFor({0.1, 10, 3, 1e-9}).find("noise"), std::string::npos);
+  EXPECT_EQ(messageFor({0.1, 2, 16, 0.0}), "");
+}
+
+}  // namespace
+}  // namespace gaussmap
