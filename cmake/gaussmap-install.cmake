@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# cmake --install, and what find_package(gaussmap) finds afterwards.
+include(CMakePackageConfigHelpers)
+
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/gaussmap)
+set(targets gaussmap_core)
+install(DIRECTORY include/gaussmap DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp"
+        PATTERN "pcl" EXCLUDE)
+if(GAUSSMAP_BUILD_PCL)
+  list(APPEND targets gaussmap_pcl)
+  install(DIRECTORY include/gaussmap/pcl DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/gaussmap)
+endif()
+install(TARGETS ${targets} EXPORT gaussmap-targets
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+        RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+if(GAUSSMAP_BUILD_APPS)
+  install(TARGETS gaussmap_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
+install(EXPORT gaussmap-targets NAMESPACE gaussmap:: DESTINATION ${package_dir})
+
+configure_package_config_file(cmake/gaussmap-config.cmake.in ${PROJECT_BINARY_DIR}/gaussmap-config.cmake
+                              INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/gaussmap-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/gaussmap-config.cmake ${PROJECT_BINARY_DIR}/gaussmap-config-version.cmake
+        DESTINATION ${package_dir})

@@ -15,7 +15,7 @@ namespace {
 
 std::int32_t asIndex(double value) {
   if (!(std::abs(value) <= 2147483647.0) || value != std::floor(value))
-    throw std::invalid_argument("a scale or cell that is no whole number");
+    throw std::invalid_argument("a cell key that is no whole number");
   return static_cast<std::int32_t>(value);
 }
 
@@ -71,7 +71,7 @@ GaussianMap<3> loadMapPcd(const std::filesystem::path& path) {
       record.weight = static_cast<float>(columns[3][i]);
       record.occupancy = static_cast<float>(columns[4][i]);
       record.cell_side = static_cast<float>(columns[5][i]);
-      record.scale = asIndex(columns[6][i]);
+      record.scale = static_cast<float>(columns[6][i]);
       all.records.push_back(record);
     }
     return fromRecords(all);

@@ -42,7 +42,7 @@ GaussianRecord toRecord(const GaussianMap<3>& map, std::size_t index, int scale,
           static_cast<float>(gaussian.weight),
           kMaxOccupancy,
           static_cast<float>(map.grid().side(scale)),
-          scale,
+          static_cast<float>(scale),
           key};
 }
 
@@ -122,9 +122,11 @@ GaussianMap<3> fromRecords(const GaussianRecords& all) {
   for (const GaussianRecord& record : all.records) {
     if (!(record.weight > 0.0f) || !std::isfinite(record.weight))
       throw std::invalid_argument("a Gaussian of weight " + std::to_string(record.weight));
-    if (sides.emplace(record.scale, record.cell_side).first->second != record.cell_side)
-      throw std::invalid_argument("cells of different sides at scale " + std::to_string(record.scale));
-    if (sides.size() > 64) throw std::invalid_argument("more than 64 scales");
+    if (!(record.scale >= 0.0f && record.scale < 64.0f) || record.scale != std::floor(record.scale))
+      throw std::invalid_argument("a scale of " + std::to_string(record.scale) + ", expected is a whole number below 64");
+    const int scale = static_cast<int>(record.scale);
+    if (sides.emplace(scale, record.cell_side).first->second != record.cell_side)
+      throw std::invalid_argument("cells of different sides at scale " + std::to_string(scale));
   }
   const MapOptions options = optionsOf(sides);
   const Grid<3> grid(options);
@@ -132,7 +134,7 @@ GaussianMap<3> fromRecords(const GaussianRecords& all) {
 
   std::vector<CellGroups> cells(sides.size());
   for (const GaussianRecord& record : all.records) {
-    const int scale = record.scale - finest;
+    const int scale = static_cast<int>(record.scale) - finest;
     const double half = 0.5 * grid.side(scale);
     Gaussian<3> gaussian;
     const Eigen::Vector3d mean(record.mean[0], record.mean[1], record.mean[2]);

@@ -78,11 +78,11 @@ TEST(CellError, IsTheMeanSquaredDistanceInStandardDeviationsOfTheData) {
     return Gaussian<3>{{x, 0, 0}, sigma * sigma * Eigen::Matrix3d::Identity(), 1.0};
   };
   const std::vector<Gaussian<3>> data = {at(0, 1), at(3, 0.5)};
-  EXPECT_NEAR(cellError({at(1, 7)}, data), 8.5, 1e-12);
-  EXPECT_NEAR(cellError({at(1, 7), at(3, 7)}, data), 0.5, 1e-12);
-  EXPECT_EQ(cellError({at(1, 7)}, {}), 0.0);
-  EXPECT_THROW(cellError({}, data), std::invalid_argument);
-  EXPECT_THROW(cellError({at(1, 7)}, {at(0, 0)}), std::domain_error);
+  EXPECT_NEAR(cellError<3>({at(1, 7)}, data), 8.5, 1e-12);
+  EXPECT_NEAR(cellError<3>({at(1, 7), at(3, 7)}, data), 0.5, 1e-12);
+  EXPECT_EQ(cellError<3>({at(1, 7)}, {}), 0.0);
+  EXPECT_THROW(cellError<3>({}, data), std::invalid_argument);
+  EXPECT_THROW(cellError<3>({at(1, 7)}, {at(0, 0)}), std::domain_error);
 }
 
 TEST(CellError, UsesTheWholeCovariance) {  // correlated data: (1, -1) is farther than (1, 1)

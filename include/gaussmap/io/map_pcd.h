@@ -22,7 +22,7 @@ struct GaussianRecord {
   float weight;                     ///< points
   float occupancy;                  ///< log-odds in [-kMaxOccupancy, kMaxOccupancy]
   float cell_side;                  ///< [m]
-  std::int32_t scale;               ///< 0 = finest
+  float scale;                      ///< 0 = finest; a float because pcl::PassThrough filters by nothing else
   std::array<std::int32_t, 3> cell;
 };
 

@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Installs the Debian packages that gaussmap is built and tested with. Works as root or through sudo,
+# says what it does, and does nothing when all are there. Usage: cmake/install-deps.sh
+set -euo pipefail
+
+packages=(
+  g++ cmake ninja-build ccache pkg-config
+  libeigen3-dev libtbb-dev libnanoflann-dev                # core: algebra, threads, nearest neighbours
+  libsqlite3-dev libzstd-dev liblzf-dev                    # core: map files, compressed PCD
+  libpcl-dev                                               # the PCL edge
+  libcli11-dev nlohmann-json3-dev                          # the command line
+  libgtest-dev libbenchmark-dev                            # tests, benchmarks
+)
+
+missing=()
+for package in "${packages[@]}"; do
+  status=$(dpkg-query -W -f '${db:Status-Abbrev}' "$package" 2>/dev/null || true)
+  [[ $status == ii* ]] || missing+=("$package")
+done
+if ((${#missing[@]} == 0)); then
+  echo "gaussmap: all ${#packages[@]} Debian packages are installed"
+  exit 0
+fi
+
+as_root=()
+if ((EUID != 0)); then
+  command -v sudo >/dev/null || { echo "gaussmap: run as root, or install sudo; missing: ${missing[*]}" >&2; exit 1; }
+  as_root=(sudo)
+fi
+echo "gaussmap: installing ${missing[*]}"
+"${as_root[@]}" apt-get update -qq
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+echo "gaussmap: done"

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <pcl/point_cloud.h>
+
+#include <optional>
+#include <vector>
+
+#include "gaussmap/map/gaussian_map.h"
+#include "gaussmap/mapping/build.h"
+#include "gaussmap/pcl/point_gaussian.h"
+
+namespace gaussmap {
+
+/// The Gaussians of all scales (coarsest first) or of one, in key order. Means are relative to sensor_origin_, which is
+/// zero but for maps so far away that floats would lose a thousandth of a finest cell.
+/// Throws std::out_of_range for a scale that the map does not have.
+pcl::PointCloud<PointGaussian> toPointCloud(const GaussianMapOctree& map, std::optional<int> scale = std::nullopt);
+
+/// The map such a cloud describes, see fromRecords(). Throws std::invalid_argument, saying what, if it describes none.
+GaussianMapOctree fromPointCloud(const pcl::PointCloud<PointGaussian>& cloud);
+
+/// The map of a cloud in the map frame; non-finite points are left out. Any point type with x, y, z.
+/// Throws std::invalid_argument on unusable options, std::out_of_range for a point too far for the cells.
+template <typename PointT>
+GaussianMapOctree buildMap(const pcl::PointCloud<PointT>& cloud, const MapOptions& options = {}) {
+  MomentGrid<3> moments(Grid<3>(options).options().resolution);
+  moments.addPoints(cloud.size(), [&](std::size_t i) { return cloud[i].getVector3fMap(); });
+  return build<3>(moments, options);
+}
+
+}  // namespace gaussmap

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gaussmap/pcl/conversions.h"
+
+#include <gtest/gtest.h>
+#include <pcl/filters/passthrough.h>
+#include <pcl/filters/impl/passthrough.hpp>
+#include <pcl/io/pcd_io.h>
+
+#include "gaussmap/io/map_pcd.h"
+#include "gaussmap/mapping/refine.h"
+#include "io/temporary_directory.h"
+#include "map/random_clouds.h"
+
+/// A user's own point type.
+struct StrangersPoint {
+  PCL_ADD_POINT4D;
+  float colour;
+  PCL_MAKE_ALIGNED_OPERATOR_NEW
+} EIGEN_ALIGN16;
+
+namespace gaussmap {
+namespace {
+
+GaussianMapOctree refinedMap() {
+  return refine<3>(build<3>(test::randomCloud<3>(4000, 31), {0.1, 5, 3, 0.0}));
+}
+
+TEST(PointGaussian, ComesOutOfAnExportedFileThroughPcl) {
+  const test::TemporaryDirectory folder;
+  const GaussianMapOctree map = refinedMap();
+  const std::string path = (folder.path() / "map.pcd").string();
+  saveMapPcd(map, path);
+  pcl::PointCloud<PointGaussian> read;
+  ASSERT_EQ(pcl::io::loadPCDFile(path, read), 0);
+  const pcl::PointCloud<PointGaussian> expected = toPointCloud(map);
+  ASSERT_EQ(read.size(), expected.size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    EXPECT_EQ(read[i].getVector3fMap(), expected[i].getVector3fMap());
+    for (int element = 0; element < 6; ++element) EXPECT_EQ(read[i].covariance[element], expected[i].covariance[element]);
+    EXPECT_EQ(read[i].weight, expected[i].weight);
+    EXPECT_EQ(read[i].occupancy, 10.0f);
+    EXPECT_EQ(read[i].cell_side, expected[i].cell_side);
+    EXPECT_EQ(read[i].scale, expected[i].scale);
+    EXPECT_EQ(read[i].cell_x, expected[i].cell_x);
+    EXPECT_EQ(read[i].cell_y, expected[i].cell_y);
+    EXPECT_EQ(read[i].cell_z, expected[i].cell_z);
+  }
+}
+
+TEST(PointGaussian, WrittenByPclIsReadAsAMap) {
+  const test::TemporaryDirectory folder;
+  const GaussianMapOctree map = refinedMap();
+  for (const bool compressed : {false, true}) {
+    const std::string path = (folder.path() / (compressed ? "compressed.pcd" : "binary.pcd")).string();
+    compressed ? pcl::io::savePCDFileBinaryCompressed(path, toPointCloud(map))
+               : pcl::io::savePCDFileBinary(path, toPointCloud(map));
+    const GaussianMapOctree read = loadAnyMap(path);
+    for (int s = 0; s < map.scales(); ++s) {
+      EXPECT_EQ(read.scale(s).keys, map.scale(s).keys);
+      EXPECT_EQ(read.gaussianCount(s), map.gaussianCount(s));
+    }
+  }
+}
+
+TEST(PointGaussian, PassesThroughAFilterOnItsScale) {
+  const GaussianMapOctree map = refinedMap();
+  pcl::PassThrough<PointGaussian> filter;
+  filter.setInputCloud(toPointCloud(map).makeShared());
+  filter.setFilterFieldName("scale");
+  filter.setFilterLimits(1.0f, 1.0f);
+  pcl::PointCloud<PointGaussian> middle;
+  filter.filter(middle);
+  EXPECT_EQ(middle.size(), map.gaussianCount(1));
+  for (const PointGaussian& point : middle) EXPECT_EQ(point.scale, 1);
+}
+
+TEST(PointGaussian, GoesBackToAMapAtOnce) {
+  const GaussianMapOctree map = refinedMap(), back = fromPointCloud(toPointCloud(map));
+  for (int s = 0; s < map.scales(); ++s) {
+    ASSERT_EQ(back.gaussianCount(s), map.gaussianCount(s));
+    for (std::size_t i = 0; i < map.gaussianCount(s); ++i)
+      EXPECT_LT((back.gaussian(i, s).mean - map.gaussian(i, s).mean).norm(), 1e-6);
+  }
+}
+
+TEST(BuildMap, TakesUsualPointTypesAndAStrangersOwn) {
+  const std::vector<Vector<3>> points = test::randomCloud<3>(2000, 32);
+  pcl::PointCloud<pcl::PointXYZ> plain;
+  pcl::PointCloud<pcl::PointXYZRGBNormal> rich;
+  pcl::PointCloud<StrangersPoint> own;
+  for (const Vector<3>& p : points) {
+    const Eigen::Vector3f f = p.cast<float>();
+    plain.emplace_back(f.x(), f.y(), f.z());
+    pcl::PointXYZRGBNormal point;
+    point.getVector3fMap() = f;
+    rich.push_back(point);
+    StrangersPoint strange;
+    strange.getVector3fMap() = f;
+    own.push_back(strange);
+  }
+  const GaussianMapOctree expected = buildMap(plain);
+  EXPECT_EQ(buildMap(rich).scale(0).moments, expected.scale(0).moments);
+  EXPECT_EQ(buildMap(own).scale(0).moments, expected.scale(0).moments);
+  EXPECT_EQ(expected.weight(2), 2000.0);
+}
+
+}  // namespace
+}  // namespace gaussmap
