@@ -20,7 +20,7 @@ constexpr std::size_t kGrain = 512;    // queries a task
 constexpr double kFarthest = 1e150;    // [m]; squares beyond it would overflow
 constexpr double kNoExtent = 1e-290;   // [m]; its inverse would overflow
 
-using Point = std::array<double, 3>;  // about the common centre
+using Point = std::array<double, 3>;
 
 /// Spreads the low 21 bits of a number to every third bit.
 std::uint64_t spread(std::uint64_t bits) {
@@ -39,11 +39,11 @@ void checkFinite(const std::vector<Vector<3>>& points, const char* name) {
                                   "' is not finite or farther than 1e150 m");
 }
 
-/// The points about `centre`, each value once, in the order of a space-filling curve. Once, because the search
+/// The points, each value once, in the order of a space-filling curve. Once, because the search
 /// would look at every one of a heap of equal points; along a curve, because the leaves of the tree then lie
 /// together in memory (a fifth of the search time for points in random order).
-std::vector<Point> sortedWithoutTwins(const std::vector<Vector<3>>& points, const Vector<3>& low, const Vector<3>& high,
-                                      const Vector<3>& centre) {
+std::vector<Point> sortedWithoutTwins(const std::vector<Vector<3>>& points, const Vector<3>& low,
+                                      const Vector<3>& high) {
   struct Item {
     std::uint64_t code;
     Point point;
@@ -55,7 +55,7 @@ std::vector<Point> sortedWithoutTwins(const std::vector<Vector<3>>& points, cons
   for (std::size_t i = 0; i < points.size(); ++i) {
     std::uint64_t code = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      items[i].point[static_cast<std::size_t>(axis)] = points[i](axis) - centre(axis);
+      items[i].point[static_cast<std::size_t>(axis)] = points[i](axis);
       code |= spread(static_cast<std::uint64_t>((points[i](axis) - low(axis)) * scale)) << axis;
     }
     items[i].code = code;
@@ -108,15 +108,13 @@ std::vector<double> nearestDistances(const std::vector<Vector<3>>& from, const s
     low = low.cwiseMin(point);
     high = high.cwiseMax(point);
   }
-  const Vector<3> centre = 0.5 * low + 0.5 * high;
-  const Points targets{sortedWithoutTwins(to, low, high, centre)};
+  const Points targets{sortedWithoutTwins(to, low, high)};
   const Tree tree(3, targets, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize));
 
   std::vector<double> distances(from.size());
   parallelFor(from.size(), threads, kGrain, [&](std::size_t i) {
-    const Point query = {from[i](0) - centre(0), from[i](1) - centre(1), from[i](2) - centre(2)};
     NearestPoint nearest;
-    tree.findNeighbors(nearest, query.data(), nanoflann::SearchParams());
+    tree.findNeighbors(nearest, from[i].data(), nanoflann::SearchParams());
     distances[i] = std::sqrt(nearest.squared);
   });
   return distances;

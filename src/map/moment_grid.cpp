@@ -6,6 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "map/add_runs.h"
 #include "map/lattice.h"
 
 namespace gaussmap {
@@ -174,17 +175,13 @@ std::size_t MomentGrid<D>::add(const PointBlock<D>& block) {
     __builtin_prefetch(home, 1);
     __builtin_prefetch(home + sizeof(Cell) - 1, 1);
   }
+  CellMoments<D>* cells[kBlock];
   for (std::size_t run = 0; run < runs; ++run) {
-    const std::size_t first = starts[run];
-    const CellKey<D> key = lattice.key(first);
+    const CellKey<D> key = lattice.key(starts[run]);
     const bool known = candidates[run] != kEmpty && same<D>(cell(candidates[run]).key, key);
-    CellMoments<D>& moments = (known ? cell(candidates[run]) : findOrInsert(key, lattice.hash[first])).moments;
-    for (std::size_t i = first; i < starts[run + 1]; ++i) {
-      typename CellMoments<D>::Offset offset;
-      for (std::size_t axis = 0; axis < D; ++axis) offset[axis] = lattice.offset[axis][i];
-      moments.add(offset);
-    }
+    cells[run] = &(known ? cell(candidates[run]) : findOrInsert(key, lattice.hash[starts[run]])).moments;
   }
+  addRuns({lattice.offset, starts, runs, cells});
   point_count_ += static_cast<std::int64_t>(lattice.size);
   return block.size;
 }

@@ -8,7 +8,7 @@
 namespace gaussmap {
 
 /// For every point of `from` the distance [m] to the nearest point of `to`, n values in the order of `from`.
-/// Both sets in one frame [m]; the search works about the centre of `to`, so that clouds far from the origin lose
+/// Both sets in one frame [m]. The search works on differences of doubles, so that clouds far from the origin lose
 /// nothing. Equal points in `to` cost nothing but their sorting. `threads` = 0: all; the result is the same to the
 /// last bit for any number. Four times as fast when neighbours in `from` are neighbours in space, as in
 /// scans and map samples, than in random order.

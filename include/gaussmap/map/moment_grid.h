@@ -17,7 +17,7 @@ namespace gaussmap {
 template <int D>
 class MomentGrid {
  public:
-  struct Cell {
+  struct alignas(32) Cell {  // two cache lines, never three
     CellKey<D> key;
     CellMoments<D> moments;
   };

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "gaussmap/io/pose.h"
+#include "gaussmap/simulation/lidar.h"
+#include "gaussmap/simulation/scene.h"
+
+namespace gaussmap::benchmark_input {
+
+/// A straight street, 200 m long: ground, two building fronts, poles every 10 m, seen by a 64-ring lidar every 2 m.
+/// Points in the map frame, in packet order (all rings of a column, then the next column).
+inline std::vector<Vector<3>> streetPoints(std::size_t count) {
+  Scene scene;
+  scene.rectangles.push_back({{-100, -15, 0}, {200, 0, 0}, {0, 30, 0}});
+  for (const double y : {-15.0, 15.0}) scene.rectangles.push_back({{-100, y, 0}, {200, 0, 0}, {0, 0, 12}});
+  for (double x = -95; x < 100; x += 10) {
+    scene.cylinders.push_back({{x, -6, 0}, {0, 0, 6}, 0.15});
+    scene.cylinders.push_back({{x + 5, 6, 0}, {0, 0, 6}, 0.15});
+  }
+  Pose turn;
+  turn.rotation = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ());  // walls not aligned with cells
+  scene = scene.transformed(turn);
+  LidarOptions lidar;
+  lidar.rings = 64;
+  lidar.max_range = 100.0;
+  std::vector<Vector<3>> points;
+  points.reserve(count + std::size_t{64} * 1800);
+  for (std::uint64_t step = 0; points.size() < count; ++step) {
+    Pose pose = turn;
+    pose.translation = turn.rotation * Eigen::Vector3d(-80.0 + 2.0 * static_cast<double>(step % 80), 0.3, 1.8);
+    for (const Eigen::Vector3d& point : simulateScan(scene, pose, lidar, step).points)
+      points.push_back(pose.rotation * point + pose.translation);
+  }
+  points.resize(count);
+  return points;
+}
+
+}  // namespace gaussmap::benchmark_input
