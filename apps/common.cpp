@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common.h"
 
+#include <sched.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <iostream>
 #include <limits>
+#include <set>
+#include <sstream>
+#include <system_error>
+#include <thread>
 
 #include "gaussmap/io/pcd_reader.h"
 #include "gaussmap/io/pose_doctor.h"
@@ -16,28 +23,55 @@
 namespace gaussmap::app {
 
 void addScanOptions(CLI::App& command, ScanInput& input) {
-  command.add_option("--poses", input.poses,
-                     "sensor poses in the map frame, one line a scan: TUM (t x y z qx qy qz qw), KITTI (12 numbers), or "
-                     "a file name in front; default: VIEWPOINT of each file");
+  command.add_option(
+      "--poses", input.poses,
+      "sensor poses in the map frame, one line a scan: TUM (t x y z qx qy qz qw), KITTI (12 numbers), or "
+      "a file name in front; default: VIEWPOINT of each file");
   command.add_option("--frame", input.frame, "frame of the points in the files")
       ->check(CLI::IsMember({"sensor", "map"}))
       ->capture_default_str();
   command.add_option("--max-range", input.max_range, "leave out points farther from the sensor [m]; 0: no limit")
-      ->check(CLI::NonNegativeNumber)
+      ->check(numberBetween(0.0, 1e9))
       ->capture_default_str();
 }
 
+namespace {
+
+void warn(const std::string& text) {
+  std::cerr << "gaussmap: warning: " << text << '\n';
+}
+
+/// A directory and a file in it, say.
+void warnOfScansGivenTwice(const std::vector<std::filesystem::path>& paths) {
+  std::set<std::filesystem::path> seen;
+  for (const std::filesystem::path& path : paths) {
+    std::error_code error;
+    if (!seen.insert(std::filesystem::weakly_canonical(path, error)).second && !error)
+      return warn(path.string() + " is given more than once, its points count as often");
+  }
+}
+
+ScanPose lookAt(const std::filesystem::path& path) {
+  const PcdReader reader(path);
+  if (reader.header().find("covariance") != nullptr && reader.header().find("cell_side") != nullptr)
+    throw FileError(path, "holds the Gaussians of a map, not the points of a scan");
+  return scanPose(reader);
+}
+
+}  // namespace
+
 std::vector<ScanSource> findScans(const ScanInput& input) {
   const std::vector<std::filesystem::path> paths = listScans({input.paths.begin(), input.paths.end()});
+  warnOfScansGivenTwice(paths);
   std::vector<ScanPose> poses;
-  for (const std::filesystem::path& path : paths) poses.push_back(scanPose(PcdReader(path)));
+  for (const std::filesystem::path& path : paths) poses.push_back(lookAt(path));
   if (!input.poses.empty()) {
     const std::vector<Pose> given = posesForScans(readPoseFile(input.poses), paths);
     for (std::size_t i = 0; i < poses.size(); ++i) poses[i].pose = given[i];
   }
   const PoseDiagnosis diagnosis = diagnosePoses(poses);
   if (input.frame == "sensor")
-    for (const std::string& warning : diagnosis.warnings) std::cerr << "gaussmap: warning: " << warning << '\n';
+    for (const std::string& warning : diagnosis.warnings) warn(warning);
   std::vector<ScanSource> scans;
   for (const ScanPose& scan : poses) scans.push_back({scan.path, normalised(scan.pose)});
   return scans;
@@ -48,9 +82,55 @@ AccumulateOptions accumulateOptions(const ScanInput& input, double resolution, i
           input.max_range > 0.0 ? input.max_range : std::numeric_limits<double>::infinity(), threads};
 }
 
+CLI::Validator numberBetween(double low, double high) {
+  std::ostringstream range;
+  range << low << " to " << high;
+  return CLI::Validator(
+      [low, high, possible = range.str()](std::string& text) -> std::string {
+        double value = 0.0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        if (error != std::errc() || end != text.data() + text.size()) return "'" + text + "' is not a number";
+        return value >= low && value <= high ? "" : text + " is not in the range of " + possible;
+      },
+      range.str());
+}
+
+void addSeed(CLI::App& command, std::uint64_t& seed, const std::string& what) {
+  const auto whole = [](std::string& text) -> std::string {
+    std::uint64_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc() && end == text.data() + text.size()
+               ? ""
+               : "'" + text + "' is not a whole number from 0 to 2^64 - 1";
+  };
+  command.add_option("--seed", seed, what)->check(CLI::Validator(whole, ""))->capture_default_str();
+}
+
+namespace {
+
+/// Processors that this process may use.
+int processors() {
+  cpu_set_t set;
+  return sched_getaffinity(0, sizeof set, &set) == 0
+             ? CPU_COUNT(&set)
+             : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+/// TBB warns on stderr when it is asked for more threads than there are processors.
+std::string mostThreads(std::string& text) {
+  int threads = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), threads);
+  const bool number = error == std::errc() && end == text.data() + text.size();
+  if (number && threads <= 1024) text = std::to_string(std::min(threads, processors()));
+  return "";
+}
+
+}  // namespace
+
 void addThreads(CLI::App& command, int& threads) {
   command.add_option("--threads", threads, "threads, 0 = all; the result does not depend on it")
       ->check(CLI::Range(0, 1024))
+      ->transform(CLI::Validator(mostThreads, ""))
       ->capture_default_str();
 }
 
@@ -59,12 +139,44 @@ void addOutput(CLI::App& command, Output& output, const std::string& what) {
   command.add_flag("--force", output.force, "replace an existing output");
 }
 
-void checkOutput(const Output& output) {
-  if (!output.force && std::filesystem::exists(output.path))
+void checkOutput(const Output& output, const std::vector<std::filesystem::path>& inputs) {
+  const std::filesystem::path path = output.path, folder = path.has_parent_path() ? path.parent_path() : ".";
+  std::error_code error;
+  for (const std::filesystem::path& input : inputs)
+    for (const char* const written : {"", ".part"})  // the second one for the time of writing
+      if (std::filesystem::equivalent(output.path + written, input, error))
+        throw UsageError(output.path + ": writing it would destroy the input " + input.string() +
+                         ", take another name");
+  if (std::filesystem::is_directory(path, error) || !path.has_filename())
+    throw UsageError("'" + output.path + "' is a directory: give the name of a file");
+  if (!std::filesystem::is_directory(folder, error))
+    throw UsageError(output.path + ": the directory " + folder.string() + " does not exist");
+  if (access(folder.c_str(), W_OK) != 0)
+    throw UsageError(output.path + ": the directory " + folder.string() + " cannot be written to");
+  if (std::filesystem::exists(path, error) && !output.force)
     throw UsageError(output.path + " exists already: take another name, or --force to replace it");
 }
 
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+void checkMapOutput(const Output& output, const std::vector<std::filesystem::path>& inputs) {
+  checkOutput(output, inputs);
+  if (std::filesystem::path(output.path).extension() == ".pcd")
+    throw UsageError(output.path +
+                     ": a map file is no PCD file, name it .gmap (gaussmap export makes a PCD file of it)");
+}
+
+std::string nameOf(const std::vector<ScanSource>& scans) {
+  if (scans.empty()) return "";
+  const std::string more = scans.size() > 1 ? " and " + std::to_string(scans.size() - 1) + " more" : "";
+  return scans.front().path.string() + more;
+}
+
+void printJson(const Json& json) {
+  std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+}
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 ProgressBar::ProgressBar() : on_terminal_(isatty(STDERR_FILENO) != 0), start_(now()) {}
 
@@ -77,9 +189,9 @@ void ProgressBar::show(const AccumulateProgress& progress) {
   constexpr int kWidth = 30;
   const int filled = static_cast<int>(kWidth * progress.scans_done / std::max<std::size_t>(progress.scans, 1));
   const double rate = static_cast<double>(progress.points) / std::max(now() - start_, 1e-3);
-  std::fprintf(stderr, "\r\033[K[%s%s] %zu/%zu scans, %.1f M points/s, %zu cells", std::string(std::size_t(filled), '#').c_str(),
-               std::string(std::size_t(kWidth - filled), '.').c_str(), progress.scans_done, progress.scans, rate / 1e6,
-               progress.cells);
+  std::fprintf(stderr, "\r\033[K[%s%s] %zu/%zu scans, %.1f M points/s, %zu cells",
+               std::string(std::size_t(filled), '#').c_str(), std::string(std::size_t(kWidth - filled), '.').c_str(),
+               progress.scans_done, progress.scans, rate / 1e6, progress.cells);
   std::fflush(stderr);
   shown_ = true;
 }
@@ -102,7 +214,7 @@ void addHistory(MapMetadata& metadata, const Json& step) {
     if (old.is_array()) history = old;
   }
   history.push_back(step);
-  metadata["history"] = history.dump();
+  metadata["history"] = history.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 Json scalesOf(const GaussianMap<3>& map) {

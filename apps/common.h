@@ -44,6 +44,10 @@ void addScanOptions(CLI::App& command, ScanInput& input);
 std::vector<ScanSource> findScans(const ScanInput& input);
 AccumulateOptions accumulateOptions(const ScanInput& input, double resolution, int threads);
 
+/// A number from `low` to `high`; unlike CLI::Range it takes no NaN.
+CLI::Validator numberBetween(double low, double high);
+/// Adds --seed; a negative number is none.
+void addSeed(CLI::App& command, std::uint64_t& seed, const std::string& what);
 /// Adds --threads (0 = all).
 void addThreads(CLI::App& command, int& threads);
 /// Adds -o/--output (required) and --force.
@@ -52,8 +56,11 @@ struct Output {
   bool force = false;
 };
 void addOutput(CLI::App& command, Output& output, const std::string& what);
-/// Throws UsageError if the output exists and --force is not given, before any work is done.
-void checkOutput(const Output& output);
+/// Throws UsageError, before any work is done: the output is one of the inputs, or no file, or its folder does not
+/// exist or may not be written, or the output exists and --force is not given.
+void checkOutput(const Output& output, const std::vector<std::filesystem::path>& inputs = {});
+/// The same for a map file, which must not be named like a PCD file.
+void checkMapOutput(const Output& output, const std::vector<std::filesystem::path>& inputs);
 
 /// A line on stderr that is written over; silent unless stderr is a terminal.
 class ProgressBar {
@@ -67,6 +74,12 @@ class ProgressBar {
   bool shown_ = false;
   double start_;
 };
+
+/// "scan.pcd", or "scan.pcd and 4 more".
+std::string nameOf(const std::vector<ScanSource>& scans);
+
+/// To stdout. File names need not be UTF-8, as JSON must: their other bytes are replaced.
+void printJson(const Json& json);
 
 /// Seconds of a steady clock.
 double now();

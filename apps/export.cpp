@@ -15,9 +15,9 @@ struct ExportCommand {
 };
 
 void run(const ExportCommand& options) {
-  checkOutput(options.output);
   const std::filesystem::path target = options.output.path;
   if (target.extension() != ".pcd") throw UsageError(options.output.path + ": the name must end in .pcd");
+  checkOutput(options.output, {options.map});
   const GaussianMap<3> map = loadAnyMap(options.map);
   ExportOptions to;
   to.overwrite = options.output.force;
@@ -37,8 +37,9 @@ void run(const ExportCommand& options) {
 void addExport(CLI::App& app) {
   auto options = std::make_shared<ExportCommand>();
   CLI::App* command = app.add_subcommand("export", "Write the Gaussians of a map as a PCD file");
-  command->footer("Fields: x y z covariance[6] weight occupancy cell_side scale cell_x cell_y cell_z.\n"
-                  "Example: gaussmap export street.gmap street.pcd --scale 1");
+  command->footer(
+      "Fields: x y z covariance[6] weight occupancy cell_side scale cell_x cell_y cell_z.\n"
+      "Example: gaussmap export street.gmap street.pcd --scale 1");
   command->add_option("map", options->map, "map (.gmap, or PCD of Gaussians)")->required();
   command->add_option("output", options->output.path, "file to write (.pcd)")->required();
   command->add_flag("--force", options->output.force, "replace an existing output");

@@ -1,10 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The command line: parses, runs one command, turns every error into one line on stderr and an exit code.
+#include <cstdio>
 #include <exception>
 #include <iostream>
 #include <new>
 
 #include "common.h"
+
+namespace gaussmap::app {
+namespace {
+
+/// What CLI11 says, in words that a newcomer understands, and where to read on.
+std::string explain(const CLI::ParseError& error, const CLI::App& app) {
+  const auto used = app.get_subcommands();
+  if (used.empty()) {
+    std::string commands;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+      commands += (commands.empty() ? "" : ", ") + command->get_name();
+    const std::vector<std::string> words = app.remaining();
+    return (words.empty() ? "no command given" : "'" + words.front() + "' is no command") + ": take one of " +
+           commands + " (see gaussmap --help)";
+  }
+  std::string text = error.what();
+  const std::string unreadable = "Could not convert: ";
+  if (text.compare(0, unreadable.size(), unreadable) == 0)
+    text = text.substr(unreadable.size()) + " cannot be read as a number of the kind asked for";
+  return text + " (see gaussmap " + used.front()->get_name() + " --help)";
+}
+
+}  // namespace
+}  // namespace gaussmap::app
 
 int main(int argc, char** argv) {
   using namespace gaussmap::app;
@@ -20,10 +45,12 @@ int main(int argc, char** argv) {
   addSimulate(app);
   try {
     app.parse(argc, argv);
+    std::cout.flush();
+    if (!std::cout || std::fflush(stdout) != 0) throw std::runtime_error("standard output cannot be written");
     return 0;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    std::cerr << "gaussmap: " << error.what() << " (see gaussmap --help)\n";
+    std::cerr << "gaussmap: " << explain(error, app) << '\n';
     return 2;
   } catch (const UsageError& error) {
     std::cerr << "gaussmap: " << error.what() << '\n';

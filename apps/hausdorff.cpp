@@ -71,23 +71,24 @@ void compareMap(const HausdorffCommand& options, const std::vector<Vector<3>>& r
     printRows(std::to_string(s), "all", "map", "ref", result.all);
     printRows(std::to_string(s), "2 sigma", "map", "ref", result.within_two_sigma);
   }
-  if (options.json) std::cout << Json({{"map", options.subject}, {"scales", all}}).dump(2) << '\n';
+  if (options.json) printJson({{"map", options.subject}, {"scales", all}});
 }
 
 void run(HausdorffCommand options) {
   options.samples.share = options.sampling == "mass" ? SampleShare::Mass : SampleShare::Volume;
   const AccumulateOptions reading = accumulateOptions(options.reference, 1.0, options.samples.threads);
-  const std::vector<Vector<3>> reference = readScans(findScans(options.reference), reading);
-  if (reference.empty()) throw std::runtime_error("the reference has no usable point");
+  const std::vector<ScanSource> scans = findScans(options.reference);
+  const std::vector<Vector<3>> reference = readScans(scans, reading);
+  if (reference.empty()) throw std::runtime_error(nameOf(scans) + ": no point of the reference is usable");
   if (isMap(options.subject)) return compareMap(options, reference);
   ScanInput cloud = options.reference;
   cloud.paths = {options.subject};
   cloud.poses.clear();
   const std::vector<Vector<3>> points = readScans(findScans(cloud), reading);
-  if (points.empty()) throw std::runtime_error(options.subject + ": has no usable point");
+  if (points.empty()) throw std::runtime_error(options.subject + ": no point is usable");
   const HausdorffResult result = hausdorff(points, reference, options.samples.threads);
   if (options.json) {
-    std::cout << Json({{"cloud", options.subject}, {"all", jsonOf(result)}}).dump(2) << '\n';
+    printJson({{"cloud", options.subject}, {"all", jsonOf(result)}});
     return;
   }
   printHead();
@@ -117,7 +118,7 @@ void addHausdorff(CLI::App& app) {
   command->add_option("--sampling", options->sampling, "samples in proportion to ellipsoid volume, or to weight")
       ->check(CLI::IsMember({"volume", "mass"}))
       ->capture_default_str();
-  command->add_option("--seed", options->samples.seed, "of the samples")->capture_default_str();
+  addSeed(*command, options->samples.seed, "of the samples");
   addScanOptions(*command, options->reference);
   addThreads(*command, options->samples.threads);
   command->add_flag("--json", options->json, "print for machines");

@@ -15,13 +15,26 @@ struct InfoOptions {
   bool json = false;
 };
 
-Json vectorOf(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+Json vectorOf(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+/// {"command": "refine", "budget": 3.0} -> "command refine, budget 3.0"
+std::string sentenceOf(const Json& step) {
+  if (step.is_string()) return step.get<std::string>();
+  if (!step.is_object()) return step.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string sentence;
+  for (const auto& [name, value] : step.items())
+    sentence += (sentence.empty() ? "" : ", ") + name + " " + sentenceOf(value);
+  return sentence;
+}
 
 void printInfo(const InfoOptions& options) {
   MapMetadata metadata;
   const GaussianMap<3> map = loadAnyMap(options.map, &metadata);
   const bool is_gmap = isGmap(options.map);
-  const MapFileSize size = is_gmap ? mapFileSize(options.map) : MapFileSize{std::filesystem::file_size(options.map), {}};
+  const MapFileSize size =
+      is_gmap ? mapFileSize(options.map) : MapFileSize{std::filesystem::file_size(options.map), {}};
   Json scales = scalesOf(map);
   for (int s = 0; s < map.scales() && is_gmap; ++s) {
     const auto index = static_cast<std::size_t>(s);
@@ -41,11 +54,12 @@ void printInfo(const InfoOptions& options) {
                  {"scales", scales},
                  {"bytes", size.file}};
     if (extent) info["extent"] = {{"low", vectorOf(extent->low)}, {"high", vectorOf(extent->high)}};
+    Json& free_text = info["metadata"] = Json::object();
     for (const auto& [name, value] : metadata) {
       const Json parsed = Json::parse(value, nullptr, false);
-      info[name] = parsed.is_discarded() ? Json(value) : parsed;
+      free_text[name] = parsed.is_discarded() ? Json(value) : parsed;
     }
-    std::cout << info.dump(2) << '\n';
+    printJson(info);
     return;
   }
   std::printf("%s: %s, %s\n", options.map.c_str(), humanBytes(size.file).c_str(),
@@ -58,7 +72,8 @@ void printInfo(const InfoOptions& options) {
               "bytes/m^2");
   for (const Json& scale : scales) {
     std::printf("%5d %10g %10zu %10zu %12.0f", scale["scale"].get<int>(), scale["cell_side"].get<double>(),
-                scale["cells"].get<std::size_t>(), scale["gaussians"].get<std::size_t>(), scale["weight"].get<double>());
+                scale["cells"].get<std::size_t>(), scale["gaussians"].get<std::size_t>(),
+                scale["weight"].get<double>());
     if (is_gmap)
       std::printf(" %12s %12.3g", humanBytes(scale["bytes"].get<std::uintmax_t>()).c_str(),
                   scale["bytes_per_square_metre"].get<double>());
@@ -68,7 +83,7 @@ void printInfo(const InfoOptions& options) {
   if (history == metadata.end()) return;
   const Json steps = Json::parse(history->second, nullptr, false);
   if (!steps.is_array()) return;
-  for (const Json& step : steps) std::printf("made by %s\n", step.dump().c_str());
+  for (const Json& step : steps) std::printf("history: %s\n", sentenceOf(step).c_str());
 }
 
 }  // namespace
@@ -76,8 +91,9 @@ void printInfo(const InfoOptions& options) {
 void addInfo(CLI::App& app) {
   auto options = std::make_shared<InfoOptions>();
   CLI::App* command = app.add_subcommand("info", "Scales, cells, Gaussians, extent and size of a map");
-  command->footer("bytes/m^2: compressed bytes per square metre of occupied cells (a cell counts side^2).\n"
-                  "Example: gaussmap info street.gmap --json");
+  command->footer(
+      "bytes/m^2: compressed bytes per square metre of occupied cells (a cell counts side^2).\n"
+      "Example: gaussmap info street.gmap --json");
   command->add_option("map", options->map, "map (.gmap, or PCD of Gaussians)")->required();
   command->add_flag("--json", options->json, "print for machines");
   command->callback([options] { printInfo(*options); });

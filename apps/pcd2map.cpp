@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "common.h"
+#include "gaussmap/io/scan_list.h"
 #include "gaussmap/mapping/build.h"
 #include "gaussmap/mapping/refine.h"
 
@@ -22,9 +23,11 @@ void pcd2map(const Pcd2mapOptions& options) {
   try {
     const Grid<3> grid(options.map);
   } catch (const std::invalid_argument& error) {
-    throw UsageError(error.what());
+    throw UsageError(std::string("--") + error.what());
   }
-  checkOutput(options.output);
+  std::vector<std::filesystem::path> inputs = listScans({options.input.paths.begin(), options.input.paths.end()});
+  if (!options.input.poses.empty()) inputs.push_back(options.input.poses);
+  checkMapOutput(options.output, inputs);
   const double start = now();
   const int threads = options.refine.threads;
 
@@ -34,8 +37,11 @@ void pcd2map(const Pcd2mapOptions& options) {
       accumulateScans(scans, accumulateOptions(options.input, options.map.resolution, threads),
                       [&](const AccumulateProgress& progress) { bar.show(progress); });
   const PointCounts counts = accumulated.counts;
-  if (counts.accepted == 0) throw std::runtime_error("none of the " + std::to_string(counts.read) +
-                                                     " points read is usable: all are NaN, at range 0 or too far");
+  if (counts.accepted == 0)
+    throw std::runtime_error(nameOf(scans) + ": of " + std::to_string(counts.read) +
+                             " points none is usable: " + std::to_string(counts.non_finite) + " are not finite, " +
+                             std::to_string(counts.at_sensor) + " at range 0, " + std::to_string(counts.beyond_range) +
+                             " beyond --max-range");
   GaussianMap<3> map = build<3>(accumulated.moments, options.map);
   accumulated.moments = MomentGrid<3>(options.map.resolution);  // its memory is not needed twice
   if (options.refine.budget > 1.0) map = refine<3>(std::move(map), options.refine);
@@ -57,17 +63,16 @@ void pcd2map(const Pcd2mapOptions& options) {
   const std::uintmax_t bytes = std::filesystem::file_size(options.output.path);
   const double seconds = now() - start;
   if (options.json) {
-    std::cout << Json({{"map", options.output.path},
-                       {"scans", scans.size()},
-                       {"points", points},
-                       {"scales", scalesOf(map)},
-                       {"bytes", bytes},
-                       {"seconds", seconds}})
-                     .dump(2)
-              << '\n';
+    printJson({{"map", options.output.path},
+               {"scans", scans.size()},
+               {"points", points},
+               {"scales", scalesOf(map)},
+               {"bytes", bytes},
+               {"seconds", seconds}});
     return;
   }
-  std::cout << options.output.path << ": " << scans.size() << " scans, " << counts.accepted << " points";
+  std::cout << options.output.path << ": " << scans.size() << (scans.size() == 1 ? " scan, " : " scans, ")
+            << counts.accepted << " points";
   if (counts.accepted < counts.read)
     std::cout << " (left out: " << counts.non_finite << " not finite, " << counts.at_sensor << " at range 0, "
               << counts.beyond_range << " too far)";
@@ -85,7 +90,8 @@ void addPcd2map(CLI::App& app) {
       "The pose of each scan is the VIEWPOINT of its file, unless --poses gives others or --frame map says that the\n"
       "points lie in the map frame already.\n"
       "Example: gaussmap pcd2map scans/*.pcd -o street.gmap --resolution 0.2 --budget 3");
-  command->add_option("scans", options->input.paths, "PCD files, or directories of them (in natural order)")->required();
+  command->add_option("scans", options->input.paths, "PCD files, or directories of them (in natural order)")
+      ->required();
   addOutput(*command, options->output, "map file to write (.gmap)");
   command->add_option("--resolution", options->map.resolution, "side of the finest cells [m]")->capture_default_str();
   command->add_option("--scales", options->map.scales, "number of scales")->capture_default_str();
@@ -93,12 +99,13 @@ void addPcd2map(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--noise", options->map.noise, "noise floor of every Gaussian [m]; 0: resolution / 20")
       ->capture_default_str();
-  command->add_option("--budget", options->refine.budget,
-                      "Gaussians per coarse scale, as a multiple of its occupied cells; 1: no refinement")
-      ->check(CLI::Range(1.0, 1e6))
+  command
+      ->add_option("--budget", options->refine.budget,
+                   "Gaussians per coarse scale, as a multiple of its occupied cells; 1: no refinement")
+      ->check(numberBetween(1.0, 1e6))
       ->capture_default_str();
   addScanOptions(*command, options->input);
-  command->add_option("--seed", options->refine.seed, "of the random swaps")->capture_default_str();
+  addSeed(*command, options->refine.seed, "of the random swaps");
   addThreads(*command, options->refine.threads);
   command->add_flag("--json", options->json, "print the result for machines");
   command->callback([options] { pcd2map(*options); });

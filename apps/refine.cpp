@@ -18,7 +18,7 @@ struct RefineCommand {
 };
 
 void run(const RefineCommand& options) {
-  checkOutput(options.output);
+  checkMapOutput(options.output, {options.map});
   const double start = now();
   MapMetadata metadata;
   GaussianMap<3> map = loadAnyMap(options.map, &metadata);
@@ -31,12 +31,7 @@ void run(const RefineCommand& options) {
              {options.output.force, SaveOptions().compression, options.refine.threads});
   const std::uintmax_t bytes = std::filesystem::file_size(options.output.path);
   if (options.json) {
-    std::cout << Json({{"map", options.output.path},
-                       {"scales", scalesOf(map)},
-                       {"bytes", bytes},
-                       {"seconds", now() - start}})
-                     .dump(2)
-              << '\n';
+    printJson({{"map", options.output.path}, {"scales", scalesOf(map)}, {"bytes", bytes}, {"seconds", now() - start}});
     return;
   }
   std::cout << options.output.path << ": Gaussians per scale";
@@ -54,11 +49,12 @@ void addRefine(CLI::App& app) {
       "Example: gaussmap refine street.gmap -o fine.gmap --budget 4");
   command->add_option("map", options->map, "map (.gmap, or PCD of Gaussians)")->required();
   addOutput(*command, options->output, "map file to write (.gmap)");
-  command->add_option("--budget", options->refine.budget,
-                      "Gaussians per coarse scale, as a multiple of its occupied cells; 1: one per cell")
-      ->check(CLI::Range(1.0, 1e6))
+  command
+      ->add_option("--budget", options->refine.budget,
+                   "Gaussians per coarse scale, as a multiple of its occupied cells; 1: one per cell")
+      ->check(numberBetween(1.0, 1e6))
       ->capture_default_str();
-  command->add_option("--seed", options->refine.seed, "of the random swaps")->capture_default_str();
+  addSeed(*command, options->refine.seed, "of the random swaps");
   addThreads(*command, options->refine.threads);
   command->add_flag("--json", options->json, "print the result for machines");
   command->callback([options] { run(*options); });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <tbb/blocked_range.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -17,7 +18,9 @@ void parallelFor(std::size_t count, int threads, std::size_t grain, const Body& 
     for (std::size_t i = 0; i < count; ++i) body(i);
     return;
   }
-  tbb::task_arena arena(threads <= 0 ? int(tbb::task_arena::automatic) : threads);
+  // TBB warns on stderr when it is asked for more threads than there are processors.
+  const int most = tbb::info::default_concurrency();
+  tbb::task_arena arena(threads <= 0 || threads > most ? most : threads);
   arena.execute([&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const tbb::blocked_range<std::size_t>& r) {
       for (std::size_t i = r.begin(); i != r.end(); ++i) body(i);

@@ -109,14 +109,14 @@ Vector<D> GaussianSampler<D>::standard(Random& random) {
   return z;
 }
 
-#define GAUSSMAP_INSTANTIATE(D)                                                      \
-  template double klDivergence<D>(const Gaussian<D>&, const Gaussian<D>&);           \
-  template double mahalanobisSquared<D>(const Vector<D>&, const Gaussian<D>&);       \
-  template double logDensity<D>(const Vector<D>&, const Gaussian<D>&);               \
-  template double logDeterminant<D>(const Matrix<D>&);                               \
-  template Gaussian<D> merge<D>(const std::vector<Gaussian<D>>&);                    \
-  template struct PrincipalAxes<D>;                                                  \
-  template PrincipalAxes<D> principalAxes<D>(const Gaussian<D>&);                    \
+#define GAUSSMAP_INSTANTIATE(D)                                                \
+  template double klDivergence<D>(const Gaussian<D>&, const Gaussian<D>&);     \
+  template double mahalanobisSquared<D>(const Vector<D>&, const Gaussian<D>&); \
+  template double logDensity<D>(const Vector<D>&, const Gaussian<D>&);         \
+  template double logDeterminant<D>(const Matrix<D>&);                         \
+  template Gaussian<D> merge<D>(const std::vector<Gaussian<D>>&);              \
+  template struct PrincipalAxes<D>;                                            \
+  template PrincipalAxes<D> principalAxes<D>(const Gaussian<D>&);              \
   template class GaussianSampler<D>;
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)

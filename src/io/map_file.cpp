@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <fstream>
+#include <limits>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -39,7 +42,8 @@ std::map<CellKey<D>, std::vector<IndexRange>> tilesOf(const MapScale<D>& scale, 
   std::map<CellKey<D>, std::vector<IndexRange>> tiles;
   for (std::size_t cell = 0; cell < scale.keys.size(); ++cell) {
     CellKey<D> tile;
-    for (std::size_t axis = 0; axis < D; ++axis) tile[axis] = static_cast<std::int32_t>(floorDivide(scale.keys[cell][axis], span));
+    for (std::size_t axis = 0; axis < D; ++axis)
+      tile[axis] = static_cast<std::int32_t>(floorDivide(scale.keys[cell][axis], span));
     std::vector<IndexRange>& runs = tiles[tile];
     if (!runs.empty() && runs.back().last == cell)
       ++runs.back().last;
@@ -109,9 +113,16 @@ Database openMap(const std::filesystem::path& path) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) throw FileError(path, "does not exist");
   if (!std::filesystem::is_regular_file(path, error)) throw FileError(path, "is not a file");
+  const std::string start = "SQLite format 3";
+  std::string head(start.size(), '\0');
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw FileError(path, "cannot be opened for reading");
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  if (file.gcount() == 0) throw FileError(path, "is empty");
+  if (head != start) throw FileError(path, "is no map: it does not begin like a .gmap");
   Database database(path, Database::Mode::ReadOnly);
   Statement id(database, "PRAGMA application_id");
-  if (!id.step() || id.integer(0) != kMapFileId) throw FileError(path, "is an SQLite file but not a gaussmap map");
+  if (!id.step() || id.integer(0) != kMapFileId) throw FileError(path, "is an SQLite database, but not a gaussmap map");
   Statement version(database, "PRAGMA user_version");
   if (!version.step() || version.integer(0) != kMapFileVersion)
     throw FileError(path, "has schema version " + std::to_string(version.integer(0)) + ", this program reads version " +
@@ -146,20 +157,25 @@ class MetadataReader {
   const MapMetadata& metadata_;
 };
 
-/// Tiles of one scale in the order they come.
+/// Tiles of one scale, one after the other.
 template <int D>
 Tile<D> readTiles(const Database& database, int s, const MapOptions& options) {
   Tile<D> all;
   Statement select(database,
-                   "SELECT x, y, z, cells, gaussians, data FROM tiles WHERE scale = " + std::to_string(s) +
-                       " ORDER BY x, y, z");
+                   "SELECT x, y, z, data FROM tiles WHERE scale = " + std::to_string(s) + " ORDER BY x, y, z");
   const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+  std::optional<CellKey<D>> last;
   while (select.step()) {
     TileAddress<D> address{s, {}, tileSpan(options)};
-    for (std::size_t axis = 0; axis < D; ++axis)
-      address.tile[axis] = static_cast<std::int32_t>(select.integer(static_cast<int>(axis)));
+    for (std::size_t axis = 0; axis < D; ++axis) {
+      const std::int64_t coordinate = select.integer(static_cast<int>(axis));
+      address.tile[axis] = static_cast<std::int32_t>(coordinate);
+      if (address.tile[axis] != coordinate) throw std::invalid_argument("a tile that lies beyond all cells");
+    }
+    if (last && !(*last < address.tile)) throw std::invalid_argument("tiles out of order or there twice");
+    last = address.tile;
     try {
-      const Tile<D> tile = decodeTile<D>(select.blob(5), address, options);
+      const Tile<D> tile = decodeTile<D>(select.blob(3), address, options);
       append(all.keys, tile.keys);
       append(all.counts, tile.counts);
       append(all.moments, tile.moments);
@@ -206,7 +222,8 @@ OrderedScale<D> inKeyOrder(const Tile<D>& tile, const MapOptions& options, int s
 
 /// Finds the children of every cell and turns labels into parents.
 template <int D>
-void link(MapScale<D>& finer, const std::vector<std::uint32_t>& labels, MapScale<D>& coarse, const Grid<D>& grid, int s) {
+void link(MapScale<D>& finer, const std::vector<std::uint32_t>& labels, MapScale<D>& coarse, const Grid<D>& grid,
+          int s) {
   std::size_t next_gaussian = 0;
   for (std::size_t child = 0; child < finer.keys.size(); ++child) {
     const CellKey<D> parent = grid.ancestor(finer.keys[child], s - 1, s);
@@ -230,7 +247,8 @@ void link(MapScale<D>& finer, const std::vector<std::uint32_t>& labels, MapScale
 template <int D>
 void saveMap(const GaussianMap<D>& map, const std::filesystem::path& path, const MapMetadata& metadata,
              const SaveOptions& options) {
-  if (!options.overwrite && std::filesystem::exists(path)) throw FileError(path, "exists already and is kept");
+  std::error_code error;
+  if (!options.overwrite && std::filesystem::exists(path, error)) throw FileError(path, "exists already and is kept");
   AtomicFile file(path);
   {
     Database database(file.partPath(), Database::Mode::CreateForBulkWrite);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fstream>
 #include <stdexcept>
+#include <system_error>
 
 #include "gaussmap/io/error.h"
 #include "gaussmap/io/map_file.h"
@@ -19,21 +20,19 @@ std::int32_t asIndex(double value) {
   return static_cast<std::int32_t>(value);
 }
 
-/// What fits into the first block; nothing if the file cannot be read.
-std::string firstBytes(const std::filesystem::path& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return "";
-  std::ifstream file(path, std::ios::binary);
-  std::string head(4096, '\0');
-  file.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(file.gcount()));
-  return head;
+/// The place that means are about. A rotation would be a pose, which the cells of a map cannot have.
+Eigen::Vector3d originOf(const PcdHeader& header) {
+  const Eigen::Vector3d origin = header.viewpoint.translation;
+  if (!origin.allFinite() || !(header.viewpoint.rotation.vec().norm() == 0.0))
+    throw std::invalid_argument("its VIEWPOINT is no plain shift");
+  return origin;
 }
 
 }  // namespace
 
 void saveMapPcd(const GaussianMap<3>& map, const std::filesystem::path& path, const ExportOptions& options) {
-  if (!options.overwrite && std::filesystem::exists(path)) throw FileError(path, "exists already and is kept");
+  std::error_code error;
+  if (!options.overwrite && std::filesystem::exists(path, error)) throw FileError(path, "exists already and is kept");
   const GaussianRecords all = toRecords(map, options.scale);
   const GaussianRecord empty{};
   const GaussianRecord& first = all.records.empty() ? empty : all.records.front();
@@ -54,12 +53,12 @@ GaussianMap<3> loadMapPcd(const std::filesystem::path& path) {
   const PcdReader reader(path);
   if (reader.header().find("covariance") == nullptr)
     throw FileError(path, "is a cloud of points, not of Gaussians: its fields lack 'covariance'");
-  std::vector<PcdColumn> wanted = {{"x"}, {"y"}, {"z"}, {"weight"}, {"occupancy"}, {"cell_side"}, {"scale"}, {"cell_x"},
-                                   {"cell_y"}, {"cell_z"}};
+  std::vector<PcdColumn> wanted = {{"x"},         {"y"},     {"z"},      {"weight"}, {"occupancy"},
+                                   {"cell_side"}, {"scale"}, {"cell_x"}, {"cell_y"}, {"cell_z"}};
   for (std::size_t element = 0; element < 6; ++element) wanted.push_back({"covariance", element});
   const std::vector<std::vector<double>> columns = reader.columns(wanted);
-  GaussianRecords all{{}, reader.header().viewpoint.translation};
   try {
+    GaussianRecords all{{}, originOf(reader.header())};
     for (std::size_t i = 0; i < reader.size(); ++i) {
       GaussianRecord record;
       for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -75,23 +74,33 @@ GaussianMap<3> loadMapPcd(const std::filesystem::path& path) {
       all.records.push_back(record);
     }
     return fromRecords(all);
-  } catch (const std::invalid_argument& error) {
+  } catch (const std::logic_error& error) {
     throw FileError(path, std::string("is no map: ") + error.what());
   }
 }
 
-bool isGmap(const std::filesystem::path& path) { return firstBytes(path).compare(0, 15, "SQLite format 3") == 0; }
+bool isGmap(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return false;
+  const std::string start = "SQLite format 3";
+  std::string head(start.size(), '\0');
+  std::ifstream(path, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));
+  return head == start;
+}
 
 bool isMap(const std::filesystem::path& path) {
   if (isGmap(path)) return true;
-  const std::string head = firstBytes(path);
-  const std::size_t fields = head.find("\nFIELDS ");
-  return fields != std::string::npos && head.find(" covariance ", fields) < head.find('\n', fields + 1);
+  try {
+    return PcdReader(path).header().find("covariance") != nullptr;
+  } catch (const FileError&) {
+    return false;
+  }
 }
 
 GaussianMap<3> loadAnyMap(const std::filesystem::path& path, MapMetadata* metadata) {
-  const std::string head = firstBytes(path);
-  if (head.find("VERSION") == 0 || head.find("# .PCD") == 0) return loadMapPcd(path);
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) throw FileError(path, "does not exist");
+  if (!isGmap(path) && (path.extension() != ".gmap" || isMap(path))) return loadMapPcd(path);
   GaussianMap<3> map = loadMap<3>(path);
   if (metadata != nullptr) *metadata = loadMetadata(path);
   return map;

@@ -2,12 +2,12 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
-#include <cstdio>
 #include <map>
-#include <string>
 #include <stdexcept>
+#include <string>
 
 #include "gaussmap/io/map_pcd.h"
 
@@ -15,6 +15,7 @@ namespace gaussmap {
 namespace {
 
 constexpr double kOriginStep = 1024.0;  // [m]
+constexpr double kRounding = 1e-6;      // what floats may have done to an eigenvalue, as a part of the largest
 
 /// Zero where floats resolve a thousandth of a finest cell everywhere in the map.
 Eigen::Vector3d recordOrigin(const GaussianMap<3>& map) {
@@ -54,17 +55,19 @@ Matrix<3> positiveDefinite(const GaussianRecord& record) {
   if (Eigen::LLT<Eigen::Matrix3d>(cov).info() == Eigen::Success) return cov;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(cov);
   const double largest = solver.eigenvalues().maxCoeff();
-  if (!(largest > 0.0)) throw std::invalid_argument("a covariance without any extent");
-  const Eigen::Vector3d lifted = solver.eigenvalues().cwiseMax(1e-6 * largest);
+  if (!(largest > 0.0) || solver.eigenvalues().minCoeff() < -kRounding * largest)
+    throw std::invalid_argument("a covariance that is not positive definite");
+  const Eigen::Vector3d lifted = solver.eigenvalues().cwiseMax(kRounding * largest);
   return solver.eigenvectors() * lifted.asDiagonal() * solver.eigenvectors().transpose();
 }
 
 /// The shortest decimal that the float stands for: 0.1, not 0.100000001490116.
 double asWritten(float value) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.6g", static_cast<double>(value));
-  const double decimal = std::stod(text);
-  return static_cast<float>(decimal) == value ? decimal : static_cast<double>(value);
+  const char* const end = std::to_chars(text, text + sizeof text, value).ptr;
+  double decimal = static_cast<double>(value);
+  std::from_chars(text, end, decimal);
+  return decimal;
 }
 
 MapOptions optionsOf(const std::map<int, float>& sides) {
@@ -72,8 +75,11 @@ MapOptions optionsOf(const std::map<int, float>& sides) {
   const int finest = sides.begin()->first;
   options.resolution = asWritten(sides.begin()->second);
   options.scales = static_cast<int>(sides.size());
+  // The file does not tell the noise floor: the usual one, or more where the coarsest cells ask for it (Grid).
+  options.noise = std::max(options.resolution / 20.0, 1.01e-7 * static_cast<double>(sides.rbegin()->second));
   if (sides.size() > 1) {
-    const double ratio = static_cast<double>(std::next(sides.begin())->second) / static_cast<double>(sides.begin()->second);
+    const double ratio =
+        static_cast<double>(std::next(sides.begin())->second) / static_cast<double>(sides.begin()->second);
     options.ratio = static_cast<int>(std::lround(std::clamp(ratio, 0.0, 1e6)));
   }
   const Grid<3> grid(options);
@@ -88,8 +94,8 @@ MapOptions optionsOf(const std::map<int, float>& sides) {
 using CellGroups = std::map<CellKey<3>, std::vector<Gaussian<3>>>;  // means about the centre of the cell
 
 /// The nearest cluster of the cell above, means about the centre of the parent.
-std::size_t nearestParent(Gaussian<3> child, const Vector<3>& centre_in_parent, const std::vector<Gaussian<3>>& clusters,
-                          std::size_t first, std::size_t last) {
+std::size_t nearestParent(Gaussian<3> child, const Vector<3>& centre_in_parent,
+                          const std::vector<Gaussian<3>>& clusters, std::size_t first, std::size_t last) {
   child.mean += centre_in_parent;
   std::size_t best = first;
   double least = std::numeric_limits<double>::infinity();
@@ -123,7 +129,8 @@ GaussianMap<3> fromRecords(const GaussianRecords& all) {
     if (!(record.weight > 0.0f) || !std::isfinite(record.weight))
       throw std::invalid_argument("a Gaussian of weight " + std::to_string(record.weight));
     if (!(record.scale >= 0.0f && record.scale < 64.0f) || record.scale != std::floor(record.scale))
-      throw std::invalid_argument("a scale of " + std::to_string(record.scale) + ", expected is a whole number below 64");
+      throw std::invalid_argument("a scale of " + std::to_string(record.scale) +
+                                  ", expected is a whole number below 64");
     const int scale = static_cast<int>(record.scale);
     if (sides.emplace(scale, record.cell_side).first->second != record.cell_side)
       throw std::invalid_argument("cells of different sides at scale " + std::to_string(scale));
@@ -139,7 +146,7 @@ GaussianMap<3> fromRecords(const GaussianRecords& all) {
     Gaussian<3> gaussian;
     const Eigen::Vector3d mean(record.mean[0], record.mean[1], record.mean[2]);
     gaussian.mean = mean + (all.origin - grid.centre(record.cell, scale));
-    if (!(gaussian.mean.cwiseAbs().maxCoeff() <= 1.1 * half))
+    if (!gaussian.mean.allFinite() || gaussian.mean.cwiseAbs().maxCoeff() > 1.1 * half)
       throw std::invalid_argument("a mean outside its cell " + toString<3>(record.cell));
     gaussian.mean = gaussian.mean.cwiseMax(-half).cwiseMin(half);
     gaussian.cov = positiveDefinite(record);

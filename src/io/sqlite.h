@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -13,6 +14,8 @@ struct sqlite3_stmt;
 namespace gaussmap {
 
 /// A thin owner of SQLite handles: every error becomes a FileError with the path of the database.
+/// A file is read as if nobody wrote to it (it is only ever replaced as a whole): without locks, without regard for
+/// journals beside it, and with no more steps and no longer values than its size warrants, whatever its pages say.
 class Database {
  public:
   enum class Mode { ReadOnly, CreateForBulkWrite };
@@ -22,12 +25,17 @@ class Database {
   const std::filesystem::path& path() const { return path_; }
   sqlite3* handle() const { return handle_.get(); }
   [[noreturn]] void fail(const std::string& doing) const;
+  [[noreturn]] void fail() const;
 
  private:
   struct Close {
     void operator()(sqlite3* handle) const;
   };
+  void limitReading();
+
   std::filesystem::path path_;
+  Mode mode_;
+  std::unique_ptr<std::int64_t> steps_left_;  // in thousands
   std::unique_ptr<sqlite3, Close> handle_;
 };
 

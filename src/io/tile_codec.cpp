@@ -14,7 +14,7 @@
 namespace gaussmap {
 namespace {
 
-constexpr std::uint64_t kMostExpansion = 4096;
+constexpr std::uint64_t kMostExpansion = 64;  // of a tile by decompression; real ones grow two or three times
 constexpr std::uint64_t kHasMoments = 1, kHasLabels = 2;
 
 std::uint64_t bitsOf(double value) {
@@ -123,6 +123,19 @@ void forTriangle(const Body& body) {
     for (int column = row; column < D; ++column) body(row, column, slot++);
 }
 
+/// Data as regular as a lattice of points are packed so tightly that decompress() would take them for a bomb: a
+/// skippable frame makes up for it.
+void fillUp(std::string& packed, std::size_t raw_size) {
+  constexpr std::uint32_t kSkippable = 0x184D2A50;
+  const std::size_t least = raw_size / kMostExpansion + 1;
+  if (packed.size() >= least) return;
+  ColumnWriter frame(packed);
+  const std::size_t fill = least - packed.size();
+  for (const std::size_t number : {std::size_t{kSkippable}, fill})
+    frame.write(1, 4, [&](std::size_t) { return std::uint64_t{number}; });
+  packed.append(fill, '\0');
+}
+
 std::string compress(const std::string& raw, int level) {
   const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context(ZSTD_createCCtx(), ZSTD_freeCCtx);
   if (!context) throw std::bad_alloc();
@@ -132,6 +145,7 @@ std::string compress(const std::string& raw, int level) {
   const std::size_t size = ZSTD_compress2(context.get(), packed.data(), packed.size(), raw.data(), raw.size());
   if (ZSTD_isError(size)) throw std::runtime_error(std::string("cannot be compressed: ") + ZSTD_getErrorName(size));
   packed.resize(size);
+  fillUp(packed, raw.size());
   return packed;
 }
 
@@ -158,7 +172,8 @@ std::string encodeTile(const Tile<D>& tile, const TileAddress<D>& address, const
   for (std::uint64_t number : headerOf<D>(address, options, cells, gaussians, flags))
     columns.write(1, 8, [&](std::size_t) { return number; });
   for (std::size_t axis = 0; axis < D; ++axis)
-    columns.write(cells, 4, [&](std::size_t i) { return std::uint64_t(tile.keys[i][axis] - tileOrigin<D>(address, axis)); });
+    columns.write(cells, 4,
+                  [&](std::size_t i) { return std::uint64_t(tile.keys[i][axis] - tileOrigin<D>(address, axis)); });
   columns.write(cells, 4, [&](std::size_t i) { return std::uint64_t{tile.counts[i]}; });
   if (flags & kHasMoments) {
     const std::vector<CellMoments<D>>& moments = tile.moments;
@@ -192,6 +207,7 @@ Tile<D> decodeTile(std::string_view bytes, const TileAddress<D>& address, const 
   const bool has_moments = flags & kHasMoments, has_labels = flags & kHasLabels;
   constexpr std::uint64_t kNumbers = 1 + D + D * (D + 1) / 2;
   constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
+  if ((flags & ~(kHasMoments | kHasLabels)) != 0) throw std::runtime_error("holds what this version does not know");
   if (cells == 0 || cells > kMost || gaussians < cells || gaussians > kMost || (has_moments && gaussians != cells) ||
       columns.left() != cells * 4 * (D + 1) + gaussians * (8 * kNumbers + (has_labels ? 4 : 0)))
     throw std::runtime_error("its size does not fit its cells");
@@ -217,7 +233,8 @@ Tile<D> decodeTile(std::string_view bytes, const TileAddress<D>& address, const 
     tile.moments.resize(cells);
     columns.read(cells, 8, [&](std::size_t i, std::uint64_t bits) { tile.moments[i].count = std::int64_t(bits); });
     for (std::size_t axis = 0; axis < D; ++axis)
-      columns.read(cells, 8, [&](std::size_t i, std::uint64_t bits) { tile.moments[i].sum[axis] = std::int64_t(bits); });
+      columns.read(cells, 8,
+                   [&](std::size_t i, std::uint64_t bits) { tile.moments[i].sum[axis] = std::int64_t(bits); });
     for (std::size_t slot = 0; slot < CellMoments<D>().product.size(); ++slot)
       columns.read(cells, 8,
                    [&](std::size_t i, std::uint64_t bits) { tile.moments[i].product[slot] = std::int64_t(bits); });
@@ -236,7 +253,11 @@ Tile<D> decodeTile(std::string_view bytes, const TileAddress<D>& address, const 
         tile.gaussians[i].cov(row, column) = tile.gaussians[i].cov(column, row) = fromBits(bits);
       });
     });
-    for (const Gaussian<D>& gaussian : tile.gaussians) checkPositiveDefinite<D>(gaussian.cov);
+    for (const Gaussian<D>& gaussian : tile.gaussians) {
+      if (!gaussian.mean.allFinite() || !std::isfinite(gaussian.weight))
+        throw std::runtime_error("a Gaussian that is not finite");
+      checkPositiveDefinite<D>(gaussian.cov);
+    }
   }
   if (has_labels) {
     tile.labels.resize(gaussians);
@@ -245,8 +266,8 @@ Tile<D> decodeTile(std::string_view bytes, const TileAddress<D>& address, const 
   return tile;
 }
 
-#define GAUSSMAP_INSTANTIATE(D)                                                                             \
-  template std::string encodeTile<D>(const Tile<D>&, const TileAddress<D>&, const MapOptions&, int);        \
+#define GAUSSMAP_INSTANTIATE(D)                                                                      \
+  template std::string encodeTile<D>(const Tile<D>&, const TileAddress<D>&, const MapOptions&, int); \
   template Tile<D> decodeTile<D>(std::string_view, const TileAddress<D>&, const MapOptions&);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)

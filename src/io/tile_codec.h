@@ -12,11 +12,11 @@ namespace gaussmap {
 /// The cells of one scale in one tile, in any order: what a row of the map file holds.
 template <int D>
 struct Tile {
-  std::vector<CellKey<D>> keys;            ///< n
-  std::vector<std::uint32_t> counts;       ///< n Gaussians in each cell
-  std::vector<CellMoments<D>> moments;     ///< n, or empty
-  std::vector<Gaussian<D>> gaussians;      ///< m = sum of counts, or empty; mean about the centre of the cell
-  std::vector<std::uint32_t> labels;       ///< m ranks of the parent in the cell above, or empty
+  std::vector<CellKey<D>> keys;         ///< n
+  std::vector<std::uint32_t> counts;    ///< n Gaussians in each cell
+  std::vector<CellMoments<D>> moments;  ///< n, or empty
+  std::vector<Gaussian<D>> gaussians;   ///< m = sum of counts, or empty; mean about the centre of the cell
+  std::vector<std::uint32_t> labels;    ///< m ranks of the parent in the cell above, or empty
 };
 
 /// What the bytes of a tile are checked against: a tile cannot be taken for another one's, or for another map's.
@@ -27,12 +27,13 @@ struct TileAddress {
   std::int32_t span = 32;  ///< cells along its side
 };
 
-/// Columns, bytes of equal weight together, zstd with checksum. Little endian whatever the machine.
+/// Columns, bytes of equal weight together, zstd with checksum; a skippable frame behind it where the data shrink more
+/// than 64 times. Little endian whatever the machine.
 template <int D>
 std::string encodeTile(const Tile<D>& tile, const TileAddress<D>& address, const MapOptions& options, int level);
 
 /// Throws std::runtime_error, saying what is wrong, unless the bytes are exactly what encodeTile makes of a tile at
-/// this address with these options. Allocates no more than 4096 times the bytes given.
+/// this address with these options. Allocates no more than 64 times the bytes given, twice.
 template <int D>
 Tile<D> decodeTile(std::string_view bytes, const TileAddress<D>& address, const MapOptions& options);
 

@@ -43,7 +43,9 @@ __attribute__((target("avx2"))) void addRunsAvx2(const Runs<3>& runs) {
 }  // namespace
 #endif
 
-void addRuns(const Runs<2>& runs) { addRunsPlainly(runs); }
+void addRuns(const Runs<2>& runs) {
+  addRunsPlainly(runs);
+}
 
 void addRuns(const Runs<3>& runs) {
 #ifdef GAUSSMAP_HAS_AVX2_PATH

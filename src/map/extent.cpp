@@ -16,7 +16,8 @@ std::optional<Box<D>> extentOf(const GaussianMap<D>& map) {
       high[axis] = std::max(high[axis], key[axis]);
     }
   const double half = 0.5 * map.grid().side(0);
-  return Box<D>{(map.grid().centre(low, 0).array() - half).matrix(), (map.grid().centre(high, 0).array() + half).matrix()};
+  return Box<D>{(map.grid().centre(low, 0).array() - half).matrix(),
+                (map.grid().centre(high, 0).array() + half).matrix()};
 }
 
 template std::optional<Box<2>> extentOf<2>(const GaussianMap<2>&);

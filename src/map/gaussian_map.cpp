@@ -2,6 +2,7 @@
 #include "gaussmap/map/gaussian_map.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -9,7 +10,7 @@ namespace gaussmap {
 namespace {
 
 constexpr std::size_t kMostEntries = 0xFFFFFFFFu;  // indices of cells and Gaussians have 32 bits
-constexpr double kMostOffset = 0.501;              // of a mean from the cell's centre, in sides: half, and some rounding
+constexpr double kMostOffset = 0.501;  // of a mean from the cell's centre, in sides: half, and some rounding
 
 [[noreturn]] void refuse(int scale, const std::string& what) {
   throw std::invalid_argument("scale " + std::to_string(scale) + ": " + what);
@@ -32,8 +33,10 @@ void checkScale(const MapScale<D>& scale, int s, double side) {
       if (moments.count <= 0) refuse(s, "a cell without points");
   }
   for (const Gaussian<D>& gaussian : scale.gaussians) {
-    if (!(gaussian.weight > 0.0) || !gaussian.cov.allFinite()) refuse(s, "a Gaussian without weight or covariance");
-    if (!(gaussian.mean.cwiseAbs().maxCoeff() <= kMostOffset * side)) refuse(s, "a Gaussian's mean lies outside its cell");
+    if (!(gaussian.weight > 0.0 && std::isfinite(gaussian.weight)) || !gaussian.cov.allFinite())
+      refuse(s, "a Gaussian without weight or covariance");
+    if (!gaussian.mean.allFinite() || gaussian.mean.cwiseAbs().maxCoeff() > kMostOffset * side)
+      refuse(s, "a Gaussian's mean lies outside its cell");
   }
   if (scale.first_gaussian.empty() ? scale.gaussianCount() != cells
                                    : !cutsIntoParts(scale.first_gaussian, cells, scale.gaussianCount()))
@@ -82,8 +85,7 @@ GaussianMap<D>::GaussianMap(const MapOptions& options, std::vector<MapScale<D>> 
   for (int s = 0; s < grid_.scales(); ++s) checkScale<D>(scale(s), s, grid_.side(s));
   for (int s = 1; s < grid_.scales(); ++s) checkLinks<D>(*this, s);
   const std::vector<CellKey<D>>& coarsest = scales_.back().keys;
-  if (std::adjacent_find(coarsest.begin(), coarsest.end(), [](auto& a, auto& b) { return !(a < b); }) !=
-      coarsest.end())
+  if (std::adjacent_find(coarsest.begin(), coarsest.end(), [](auto& a, auto& b) { return !(a < b); }) != coarsest.end())
     refuse(grid_.scales() - 1, "cells out of order or there twice");
   for (const MapScale<D>& level : scales_) weights_.push_back(weightOf<D>(level));
 }

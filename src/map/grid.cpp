@@ -69,8 +69,7 @@ template <int D>
 CellKey<D> Grid<D>::ancestor(const CellKey<D>& key, int from, int to) const {
   const std::int64_t span = cellsAlongSide(to) / cellsAlongSide(from);
   CellKey<D> ancestor;
-  for (std::size_t axis = 0; axis < D; ++axis)
-    ancestor[axis] = static_cast<std::int32_t>(floorDivide(key[axis], span));
+  for (std::size_t axis = 0; axis < D; ++axis) ancestor[axis] = static_cast<std::int32_t>(floorDivide(key[axis], span));
   return ancestor;
 }
 

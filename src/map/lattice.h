@@ -12,7 +12,9 @@ namespace gaussmap {
 /// The rounding is one multiplication and one addition, each rounded by itself: the files that include this
 /// are compiled with -ffp-contract=off, so that no instruction set gives another lattice point.
 
-inline double stepsPerMetre(double resolution) { return static_cast<double>(kStepsPerCell) / resolution; }
+inline double stepsPerMetre(double resolution) {
+  return static_cast<double>(kStepsPerCell) / resolution;
+}
 
 /// Adding 1.5 * 2^52 to |steps| < 2^51 leaves the nearest integer (ties to even) in the low bits of the double.
 inline constexpr double kSnap = 0x1.8p52;
@@ -20,7 +22,9 @@ inline constexpr std::int64_t kSnapBits = 0x4338000000000000;
 
 /// Lattice coordinate from the bits of (steps + kSnap); anything else than a number below 2^51 gives nonsense that
 /// fitsLattice() refuses.
-inline std::int64_t latticeFromBits(std::int64_t bits) { return bits - kSnapBits; }
+inline std::int64_t latticeFromBits(std::int64_t bits) {
+  return bits - kSnapBits;
+}
 
 /// 0 if the coordinate lies in a cell with a 32-bit index; not 0 also for what became of NaN and infinity.
 inline std::uint64_t misfitsLattice(std::int64_t lattice) {

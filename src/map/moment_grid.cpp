@@ -201,8 +201,7 @@ void MomentGrid<D>::merge(const MomentGrid& other) {
   }
   constexpr std::size_t kAhead = 16;
   for (std::size_t i = 0; i < other.size(); ++i) {
-    if (i + kAhead < other.size())
-      __builtin_prefetch(&slots_[hashOf<D>(other[i + kAhead].key) & (slots_.size() - 1)]);
+    if (i + kAhead < other.size()) __builtin_prefetch(&slots_[hashOf<D>(other[i + kAhead].key) & (slots_.size() - 1)]);
     add(other[i].key, other[i].moments);
   }
 }

@@ -127,9 +127,9 @@ std::optional<Vector<D>> normalAt(const GaussianMap<D>& map, const Vector<D>& po
   return std::nullopt;
 }
 
-#define GAUSSMAP_INSTANTIATE(D)                                                                       \
-  template double logLikelihood<D>(const GaussianMap<D>&, const Vector<D>&, int);                     \
-  template std::optional<Nearest<D>> nearest<D>(const GaussianMap<D>&, const Vector<D>&, int);        \
+#define GAUSSMAP_INSTANTIATE(D)                                                                \
+  template double logLikelihood<D>(const GaussianMap<D>&, const Vector<D>&, int);              \
+  template std::optional<Nearest<D>> nearest<D>(const GaussianMap<D>&, const Vector<D>&, int); \
   template std::optional<Vector<D>> normalAt<D>(const GaussianMap<D>&, const Vector<D>&);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)

@@ -3,6 +3,7 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
+#include <algorithm>
 #include <cmath>
 #include <mutex>
 #include <stdexcept>
@@ -25,6 +26,16 @@ PointCounts& operator+=(PointCounts& a, const PointCounts& b) {
   return a;
 }
 
+bool isFinitePoint(const PointBlock<3>& block, std::size_t i) {
+  return std::isfinite(block.coordinate[0][i]) && std::isfinite(block.coordinate[1][i]) &&
+         std::isfinite(block.coordinate[2][i]);
+}
+
+void checkOptions(const AccumulateOptions& options) {
+  if (!(options.max_range >= 0.0))
+    throw std::invalid_argument("max_range = " + std::to_string(options.max_range) + ": must not be negative");
+}
+
 /// Takes out the points that are none and moves the others into the map frame.
 PointCounts acceptPoints(const ScanSource& scan, const AccumulateOptions& options, PointBlock<3>& block) {
   const bool in_sensor_frame = options.frame == ScanFrame::Sensor;
@@ -41,8 +52,9 @@ PointCounts acceptPoints(const ScanSource& scan, const AccumulateOptions& option
   std::size_t kept = 0;
   for (std::size_t i = 0; i < block.size; ++i) {
     for (int axis = 0; axis < 3; ++axis) block.coordinate[axis][kept] = block.coordinate[axis][i];
-    const bool finite = std::isfinite(square_range[i]), at_sensor = in_sensor_frame && square_range[i] == 0.0,
-               too_far = finite && square_range[i] > most;
+    // The square of a number may be infinite.
+    const bool finite = std::isfinite(square_range[i]) || isFinitePoint(block, i),
+               at_sensor = in_sensor_frame && square_range[i] == 0.0, too_far = finite && square_range[i] > most;
     counts.non_finite += !finite;
     counts.at_sensor += at_sensor;
     counts.beyond_range += too_far;
@@ -54,7 +66,8 @@ PointCounts acceptPoints(const ScanSource& scan, const AccumulateOptions& option
   return counts;
 }
 
-/// Runs body(first) on the blocks of a scan, several at a time.
+/// Runs body(first) on the blocks of a scan, several at a time. A thread that waits for the last of them does not
+/// begin another scan meanwhile: the number of open scans stays that of the threads.
 template <typename Body>
 void forBlocks(const PcdReader& reader, int threads, const Body& body) {
   const std::size_t step = kBlocksPerTask * PointBlock<3>::kCapacity;
@@ -66,13 +79,14 @@ void forBlocks(const PcdReader& reader, int threads, const Body& body) {
   if (threads == 1)
     for (std::size_t i = 0; i < tasks; ++i) task(i);
   else
-    tbb::parallel_for(std::size_t{0}, tasks, task);
+    tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t{0}, tasks, task); });
 }
 
 }  // namespace
 
 AccumulatedScans accumulateScans(const std::vector<ScanSource>& scans, const AccumulateOptions& options,
                                  const std::function<void(const AccumulateProgress&)>& progress) {
+  checkOptions(options);
   struct Partial {
     MomentGrid<3> moments;
     PointCounts counts;
@@ -89,7 +103,7 @@ AccumulatedScans accumulateScans(const std::vector<ScanSource>& scans, const Acc
       reader.read(first, block);
       partial.counts += acceptPoints(scan, options, block);
       try {
-        partial.moments.add(block);
+        if (partial.moments.add(block) != block.size) throw std::out_of_range("a point too far for doubles");
       } catch (const std::out_of_range& error) {
         throw std::out_of_range(scan.path.string() + ": " + error.what());
       }
@@ -114,6 +128,7 @@ AccumulatedScans accumulateScans(const std::vector<ScanSource>& scans, const Acc
 }
 
 std::vector<Vector<3>> readScans(const std::vector<ScanSource>& scans, const AccumulateOptions& options) {
+  checkOptions(options);
   std::vector<Vector<3>> points;
   for (const ScanSource& scan : scans) {
     const PcdReader reader(scan.path);

@@ -13,8 +13,7 @@ template <int D>
 GaussianMap<D> withCoarserScales(MapScale<D> finest, const Grid<D>& grid) {
   std::vector<MapScale<D>> scales(static_cast<std::size_t>(grid.scales()));
   scales.front() = std::move(finest);
-  for (std::size_t s = 1; s < scales.size(); ++s)
-    scales[s] = coarsen<D>(scales[s - 1], grid, static_cast<int>(s) - 1);
+  for (std::size_t s = 1; s < scales.size(); ++s) scales[s] = coarsen<D>(scales[s - 1], grid, static_cast<int>(s) - 1);
   return GaussianMap<D>(grid.options(), std::move(scales));
 }
 
@@ -61,9 +60,9 @@ GaussianMap<D> build(const MapScale<D>& cells, const MapOptions& options) {
   return withCoarserScales<D>(std::move(finest), Grid<D>(options));
 }
 
-#define GAUSSMAP_INSTANTIATE(D)                                                        \
-  template GaussianMap<D> build<D>(const MomentGrid<D>&, const MapOptions&);           \
-  template GaussianMap<D> build<D>(const std::vector<Vector<D>>&, const MapOptions&);  \
+#define GAUSSMAP_INSTANTIATE(D)                                                       \
+  template GaussianMap<D> build<D>(const MomentGrid<D>&, const MapOptions&);          \
+  template GaussianMap<D> build<D>(const std::vector<Vector<D>>&, const MapOptions&); \
   template GaussianMap<D> build<D>(const MapScale<D>&, const MapOptions&);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)

@@ -33,7 +33,12 @@ GaussianMapOctree fromPointCloud(const pcl::PointCloud<PointGaussian>& cloud) {
   GaussianRecords all{{}, cloud.sensor_origin_.head<3>().cast<double>()};
   all.records.reserve(cloud.size());
   for (const PointGaussian& point : cloud) {
-    GaussianRecord record{{point.x, point.y, point.z}, {}, point.weight, point.occupancy, point.cell_side, point.scale,
+    GaussianRecord record{{point.x, point.y, point.z},
+                          {},
+                          point.weight,
+                          point.occupancy,
+                          point.cell_side,
+                          point.scale,
                           {point.cell_x, point.cell_y, point.cell_z}};
     std::copy(std::begin(point.covariance), std::end(point.covariance), record.covariance.begin());
     all.records.push_back(record);

@@ -139,9 +139,9 @@ void registerInput(const std::string& name, const Cloud::Ptr& cloud) {
   for (const double side : {1.0, 0.2})
     for (const auto& [title, body] : bodies) {
       const std::string full = std::string(title) + "/" + name + "/" + (side == 1.0 ? "1m" : "0.2m");
-      benchmark::RegisterBenchmark(full.c_str(),
-                                   [function = body, cloud, side](benchmark::State& state) { function(state, cloud, side); })
-          ->Unit(benchmark::kMillisecond);
+      benchmark::RegisterBenchmark(full.c_str(), [function = body, cloud, side](benchmark::State& state) {
+        function(state, cloud, side);
+      })->Unit(benchmark::kMillisecond);
     }
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "../src/clustering/kl_problem.h"  // inner parts, not installed
 #include "clustering/random_gaussians.h"
 
 namespace gaussmap {
@@ -110,6 +111,25 @@ TEST(InsertCluster, SeedsAtTheFarDatumOrAtTheHeavyOne) {
   EXPECT_EQ(heavy[41], heavy[43]);
   EXPECT_NE(heavy[41], heavy[0]);
   EXPECT_EQ(heavy[40], heavy[0]);
+}
+
+TEST(KLProblem, GivesTheDivergencesOfThePaper) {  // what the swap loop compares: d_max with d_min
+  Random random(8);
+  const std::vector<Gaussian<3>> data = randomGaussians<3>(random, 300), references = randomGaussians<3>(random, 5);
+  const KLProblem<3> problem(data);
+  KLPartition<3> partition;
+  partition.references = references;
+  for (Gaussian<3>& w : partition.references) w.mean -= problem.centre();
+  problem.assign(partition.references, partition.labels);
+  const Eigen::VectorXd own = problem.ownDistances(partition);
+  for (std::size_t j = 0; j < data.size(); ++j)
+    EXPECT_NEAR(own(Eigen::Index(j)), klDivergence(data[j], references[std::size_t(partition.labels[j])]),
+                1e-10 * (1.0 + own(Eigen::Index(j))));
+  const Eigen::MatrixXd between = KLProblem<3>::distancesBetween(references);
+  for (Eigen::Index u = 0; u < 5; ++u)
+    for (Eigen::Index v = 0; v < 5; ++v)
+      EXPECT_NEAR(between(u, v), klDivergence(references[std::size_t(u)], references[std::size_t(v)]),
+                  1e-10 * (1.0 + between(u, v)));
 }
 
 TEST(InsertCluster, NeverLosesBySwapping) {

@@ -240,6 +240,13 @@ TEST(KLKMeans, BreaksTiesTowardsTheSmallerLabel) {
   const KLClustering<3> clustering = KLKMeans<3>().run(data, {data[7], data[7], data[7]});
   EXPECT_EQ(clustering.references.size(), 1u);
   EXPECT_EQ(clustering.labels, std::vector<int>(50, 0));
+  // A datum half-way between two references, exactly.
+  std::vector<Gaussian<2>> row;
+  for (double x : {-1.0, 0.0, 1.0}) row.push_back({{x, 0}, Eigen::Matrix2d::Identity(), 1.0});
+  KLKMeansOptions options;
+  options.max_iterations = 1;
+  EXPECT_EQ(KLKMeans<2>(options).run(row, {row[0], row[2]}).labels, (std::vector<int>{0, 0, 1}));
+  EXPECT_EQ(KLKMeans<2>(options).run(row, {row[2], row[0]}).labels, (std::vector<int>{1, 0, 0}));
 }
 
 TEST(KLKMeans, PutsDuplicatesIntoOneCluster) {
@@ -249,7 +256,7 @@ TEST(KLKMeans, PutsDuplicatesIntoOneCluster) {
   EXPECT_EQ(one.references.size(), 1u);
   EXPECT_NEAR(one.distortion, 0.0, 1e-12);
   std::vector<Gaussian<3>> mixed;
-  for (int i = 0; i < 10; ++i) mixed.push_back(two[i % 2]);
+  for (int i = 0; i < 10; ++i) mixed.push_back(two[std::size_t(i % 2)]);
   const KLClustering<3> both = KLKMeans<3>(withK(4)).fit(mixed);
   EXPECT_EQ(both.references.size(), 2u);
   EXPECT_NEAR(both.distortion, 0.0, 1e-12);

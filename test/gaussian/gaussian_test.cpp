@@ -53,8 +53,12 @@ void expectFormulaOfThePaper() {
     EXPECT_GE(klDivergence(p, q), 0.0);
   }
 }
-TEST(KLDivergence, IsTheFormulaOfThePaperIn2D) { expectFormulaOfThePaper<2>(); }
-TEST(KLDivergence, IsTheFormulaOfThePaperIn3D) { expectFormulaOfThePaper<3>(); }
+TEST(KLDivergence, IsTheFormulaOfThePaperIn2D) {
+  expectFormulaOfThePaper<2>();
+}
+TEST(KLDivergence, IsTheFormulaOfThePaperIn3D) {
+  expectFormulaOfThePaper<3>();
+}
 
 TEST(KLDivergence, RefusesASingularCovariance) {
   Gaussian<3> flat = sphere(0, 1.0);
@@ -104,7 +108,9 @@ TEST(Merge, LosesNothingFarFromTheOrigin) {
   EXPECT_NEAR(merged.cov(1, 1), 0.01, 1e-12);
 }
 
-TEST(Merge, OfNothingIsRefused) { EXPECT_THROW(merge<3>({}), std::invalid_argument); }
+TEST(Merge, OfNothingIsRefused) {
+  EXPECT_THROW(merge<3>({}), std::invalid_argument);
+}
 
 TEST(PrincipalAxes, TellPlanesLinesAndSpheresApart) {
   const auto withDeviations = [](double x, double y, double z) {

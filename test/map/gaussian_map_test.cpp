@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -167,6 +168,8 @@ TEST(GaussianMap, RefusesScalesThatDoNotFitTogether) {
   expectRefused([](auto& s) { s[1].first_child[1] = s[1].first_child[0]; });
   expectRefused([](auto& s) { s[1].gaussians[0].weight = 0.0; });
   expectRefused([](auto& s) { s[1].gaussians[0].mean.x() = 0.6; });
+  expectRefused([](auto& s) { s[1].gaussians[0].mean.z() = std::nan(""); });
+  expectRefused([](auto& s) { s[1].gaussians[0].weight = HUGE_VAL; });
   expectRefused([](auto& s) { s[1].gaussians.push_back(s[1].gaussians[0]); });
 }
 

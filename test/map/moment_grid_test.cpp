@@ -40,10 +40,7 @@ MomentGrid<D> gridOf(const std::vector<Vector<D>>& points, double resolution) {
 /// The definition, point by point, in long double: no lattice, no hash.
 template <int D>
 void expectEqualToLongDoubleReference(double resolution, double extent, const Vector<D>& origin) {
-  struct Sums {
-    std::vector<Vector<D>> points;
-  };
-  std::map<CellKey<D>, Sums> reference;
+  std::map<CellKey<D>, std::vector<Vector<D>>> reference;
   std::vector<Vector<D>> points = randomPoints<D>(20000, extent, 5);
   const Grid<D> geometry({resolution, 2, 1, 0.0});
   for (Vector<D>& point : points) {
@@ -56,25 +53,28 @@ void expectEqualToLongDoubleReference(double resolution, double extent, const Ve
       EXPECT_NEAR(static_cast<double>(std::floor(exact + 0x1.0p-17L) - static_cast<long double>(key[index])), 0.0, 1e-9)
           << point.transpose();
     }
-    reference[key].points.push_back(point);
+    reference[key].push_back(point);
   }
   const auto cells = contents<D>(gridOf<D>(points, resolution));
   ASSERT_EQ(cells.size(), reference.size());
-  for (const auto& [key, sums] : reference) {
+  for (const auto& entry : reference) {
+    const CellKey<D>& key = entry.first;
+    const std::vector<Vector<D>>& in_cell = entry.second;
     const CellMoments<D>& moments = cells.at(key);
-    const auto n = static_cast<long double>(sums.points.size());
-    ASSERT_EQ(moments.count, static_cast<std::int64_t>(sums.points.size()));
+    const auto n = static_cast<long double>(in_cell.size());
+    ASSERT_EQ(moments.count, static_cast<std::int64_t>(in_cell.size()));
     long double mean[D] = {};
-    for (const Vector<D>& point : sums.points)
+    for (const Vector<D>& point : in_cell)
       for (int axis = 0; axis < D; ++axis)
-        mean[axis] += (static_cast<long double>(point(axis)) -
-                       (static_cast<long double>(key[std::size_t(axis)]) + 0.5L) * static_cast<long double>(resolution)) /
-                      n;
+        mean[axis] +=
+            (static_cast<long double>(point(axis)) -
+             (static_cast<long double>(key[std::size_t(axis)]) + 0.5L) * static_cast<long double>(resolution)) /
+            n;
     for (int row = 0; row < D; ++row) {
       EXPECT_NEAR(moments.mean(resolution)(row), static_cast<double>(mean[row]), 1e-5 * resolution);
       for (int column = 0; column < D; ++column) {
         long double product = 0.0L;
-        for (const Vector<D>& point : sums.points) {
+        for (const Vector<D>& point : in_cell) {
           const auto offset = [&](int axis) {
             return static_cast<long double>(point(axis)) -
                    (static_cast<long double>(key[std::size_t(axis)]) + 0.5L) * static_cast<long double>(resolution) -
@@ -93,7 +93,9 @@ TEST(MomentGrid, EqualsALongDoubleReferenceIn3D) {
   expectEqualToLongDoubleReference<3>(0.1, 1.0, Vector<3>::Zero());
   expectEqualToLongDoubleReference<3>(0.37, 5.0, Vector<3>::Zero());
 }
-TEST(MomentGrid, EqualsALongDoubleReferenceIn2D) { expectEqualToLongDoubleReference<2>(0.05, 1.0, Vector<2>::Zero()); }
+TEST(MomentGrid, EqualsALongDoubleReferenceIn2D) {
+  expectEqualToLongDoubleReference<2>(0.05, 1.0, Vector<2>::Zero());
+}
 TEST(MomentGrid, EqualsALongDoubleReferenceTenThousandKilometresAway) {
   expectEqualToLongDoubleReference<3>(0.25, 2.0, Vector<3>(1e7, -1e7, 5e6));
 }

@@ -31,14 +31,22 @@ void expectNearestToBeTheBruteForceOne(const MapOptions& options, double extent)
       EXPECT_NEAR((map.gaussian(found->index, s).mean - point).norm(), least, 1e-12 * (1.0 + least));
     }
 }
-TEST(NearestGaussian, IsTheBruteForceOneNearTheMap) { expectNearestToBeTheBruteForceOne<3>({0.1, 5, 3, 0.0}, 3.0); }
+TEST(NearestGaussian, IsTheBruteForceOneNearTheMap) {
+  expectNearestToBeTheBruteForceOne<3>({0.1, 5, 3, 0.0}, 3.0);
+}
 TEST(NearestGaussian, IsTheBruteForceOneFarFromTheMap) {
   expectNearestToBeTheBruteForceOne<3>({0.1, 5, 3, 0.0}, 300.0);
 }
-TEST(NearestGaussian, IsTheBruteForceOneInThePlane) { expectNearestToBeTheBruteForceOne<2>({0.05, 10, 2, 0.0}, 5.0); }
-TEST(NearestGaussian, IsTheBruteForceOneOfASingleScale) { expectNearestToBeTheBruteForceOne<3>({0.1, 2, 1, 0.0}, 5.0); }
+TEST(NearestGaussian, IsTheBruteForceOneInThePlane) {
+  expectNearestToBeTheBruteForceOne<2>({0.05, 10, 2, 0.0}, 5.0);
+}
+TEST(NearestGaussian, IsTheBruteForceOneOfASingleScale) {
+  expectNearestToBeTheBruteForceOne<3>({0.1, 2, 1, 0.0}, 5.0);
+}
 
-TEST(NearestGaussian, OfAnEmptyMapIsNothing) { EXPECT_FALSE(nearest<3>(GaussianMapOctree(), {0, 0, 0}, 0)); }
+TEST(NearestGaussian, OfAnEmptyMapIsNothing) {
+  EXPECT_FALSE(nearest<3>(GaussianMapOctree(), {0, 0, 0}, 0));
+}
 
 TEST(LogLikelihood, OfASingleGaussianIsItsLogDensity) {
   const GaussianMapOctree map = build<3>({{0.05, 0.05, 0.05}, {0.06, 0.05, 0.05}}, {0.1, 10, 1, 0.0});

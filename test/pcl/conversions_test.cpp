@@ -3,20 +3,23 @@
 
 #include <gtest/gtest.h>
 #include <pcl/filters/passthrough.h>
-#include <pcl/filters/impl/passthrough.hpp>
 #include <pcl/io/pcd_io.h>
+#include <pcl/filters/impl/passthrough.hpp>
 
 #include "gaussmap/io/map_pcd.h"
 #include "gaussmap/mapping/refine.h"
 #include "io/temporary_directory.h"
 #include "map/random_clouds.h"
 
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpedantic"
 /// A user's own point type.
-struct StrangersPoint {
+struct EIGEN_ALIGN16 StrangersPoint {
   PCL_ADD_POINT4D;
   float colour;
   PCL_MAKE_ALIGNED_OPERATOR_NEW
-} EIGEN_ALIGN16;
+};
+#pragma GCC diagnostic pop
 
 namespace gaussmap {
 namespace {
@@ -36,7 +39,8 @@ TEST(PointGaussian, ComesOutOfAnExportedFileThroughPcl) {
   ASSERT_EQ(read.size(), expected.size());
   for (std::size_t i = 0; i < read.size(); ++i) {
     EXPECT_EQ(read[i].getVector3fMap(), expected[i].getVector3fMap());
-    for (int element = 0; element < 6; ++element) EXPECT_EQ(read[i].covariance[element], expected[i].covariance[element]);
+    for (int element = 0; element < 6; ++element)
+      EXPECT_EQ(read[i].covariance[element], expected[i].covariance[element]);
     EXPECT_EQ(read[i].weight, expected[i].weight);
     EXPECT_EQ(read[i].occupancy, 10.0f);
     EXPECT_EQ(read[i].cell_side, expected[i].cell_side);

@@ -57,7 +57,7 @@ class KLKMeans {
   /// Throws std::invalid_argument, naming the option.
   explicit KLKMeans(const KLKMeansOptions& options = {});
 
-  /// Own start (one cluster at a time by Algorithm 2 up to k). With k >= n each datum is its own cluster.
+  /// Own start (drawn as in k-means++), then the swap loop of Algorithm 2. With k >= n each datum is its own cluster.
   KLClustering<D> fit(const std::vector<Gaussian<D>>& data) const;
 
   /// Plain k-means from given references, no swaps; `k` of the options is not used.

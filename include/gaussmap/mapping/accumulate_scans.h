@@ -37,7 +37,7 @@ struct PointCounts {
   std::int64_t read = 0;
   std::int64_t accepted = 0;
   std::int64_t non_finite = 0;
-  std::int64_t at_sensor = 0;    ///< at range 0, as some drivers mark 'no return' (frame Sensor only)
+  std::int64_t at_sensor = 0;  ///< at range 0, as some drivers mark 'no return' (frame Sensor only)
   std::int64_t beyond_range = 0;
 };
 
@@ -55,7 +55,8 @@ struct AccumulatedScans {
 
 /// Reads scans one after the other and counts their points into cells: memory grows with the map, not with the scans.
 /// The sums are exact, so order and threads do not matter. `progress` is called after every scan, one call at a time.
-/// Throws FileError for a damaged file; std::out_of_range, naming file and point, for a point too far for the cells.
+/// Throws FileError for a damaged file; std::out_of_range, naming file and point, for a point too far for the cells;
+/// std::invalid_argument, naming the option.
 AccumulatedScans accumulateScans(const std::vector<ScanSource>& scans, const AccumulateOptions& options,
                                  const std::function<void(const AccumulateProgress&)>& progress = {});
 

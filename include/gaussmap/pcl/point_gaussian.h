@@ -11,23 +11,30 @@
 
 namespace gaussmap {
 
+// PCL's macro for x y z makes an anonymous struct in a union, which the standard does not know.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpedantic"
+
 /// One Gaussian of a map as a PCL point: x y z is the mean, so that every PCL tool shows and filters it.
 /// The fields are those of the PCD files that gaussmap writes.
 struct EIGEN_ALIGN16 PointGaussian {
-  PCL_ADD_POINT4D;                     ///< mean [m]
-  float covariance[6];                 ///< xx xy xz yy yz zz [m^2]
-  float weight;                        ///< points
-  float occupancy;                     ///< log-odds in [-10, 10]
-  float cell_side;                     ///< [m]
-  float scale;                         ///< 0 = finest; a float because pcl::PassThrough filters by nothing else
-  std::int32_t cell_x, cell_y, cell_z; ///< key of its cell
+  PCL_ADD_POINT4D;                      ///< mean [m]
+  float covariance[6];                  ///< xx xy xz yy yz zz [m^2]
+  float weight;                         ///< points
+  float occupancy;                      ///< log-odds in [-10, 10]
+  float cell_side;                      ///< [m]
+  float scale;                          ///< 0 = finest; a float because pcl::PassThrough filters by nothing else
+  std::int32_t cell_x, cell_y, cell_z;  ///< key of its cell
   PCL_MAKE_ALIGNED_OPERATOR_NEW
 };
 
+#pragma GCC diagnostic pop
+
 }  // namespace gaussmap
 
-POINT_CLOUD_REGISTER_POINT_STRUCT(gaussmap::PointGaussian,
-                                  (float, x, x)(float, y, y)(float, z, z)(float[6], covariance, covariance)(
-                                      float, weight, weight)(float, occupancy, occupancy)(float, cell_side, cell_side)(
-                                      float, scale, scale)(std::int32_t, cell_x, cell_x)(
-                                      std::int32_t, cell_y, cell_y)(std::int32_t, cell_z, cell_z))
+POINT_CLOUD_REGISTER_POINT_STRUCT(
+    gaussmap::PointGaussian,
+    (float, x, x)(float, y, y)(float, z, z)(float[6], covariance,
+                                            covariance)(float, weight, weight)(float, occupancy,
+                                                                               occupancy)(float, cell_side, cell_side)(
+        float, scale, scale)(std::int32_t, cell_x, cell_x)(std::int32_t, cell_y, cell_y)(std::int32_t, cell_z, cell_z))
