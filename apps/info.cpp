@@ -6,12 +6,14 @@
 #include "common.h"
 #include "gaussmap/io/map_pcd.h"
 #include "gaussmap/map/extent.h"
+#include "plot.h"
 
 namespace gaussmap::app {
 namespace {
 
 struct InfoOptions {
   std::string map;
+  Output plot;
   bool json = false;
 };
 
@@ -29,9 +31,32 @@ std::string sentenceOf(const Json& step) {
   return sentence;
 }
 
+/// The error curves that the map was refined by; nothing if there are none.
+Json curvesOf(const MapMetadata& metadata) {
+  const auto entry = metadata.find("error_curves");
+  const Json curves = entry == metadata.end() ? Json() : Json::parse(entry->second, nullptr, false);
+  return curves.is_array() ? curves : Json::array();
+}
+
+void printCurves(const Json& curves) {
+  for (const Json& curve : curves) {
+    std::printf("error curve of scale %d, Gaussians: 95 %% / mean [m] ", curve.at("scale").get<int>());
+    for (const Json& point : curve.at("points"))
+      std::printf("  %zu: %.3g / %.3g", point.at("gaussians").get<std::size_t>(), point.at("q95").get<double>(),
+                  point.at("mean").get<double>());
+    std::printf("\n");
+  }
+}
+
 void printInfo(const InfoOptions& options) {
+  if (!options.plot.path.empty()) checkOutput(options.plot, {options.map});
   MapMetadata metadata;
   const GaussianMap<3> map = loadAnyMap(options.map, &metadata);
+  const Json curves = curvesOf(metadata);
+  if (!options.plot.path.empty()) {
+    if (curves.empty()) throw std::runtime_error(options.map + ": has no error curves; gaussmap refine makes them");
+    plotCurves(curves, options.plot.path);
+  }
   const bool is_gmap = isGmap(options.map);
   const MapFileSize size =
       is_gmap ? mapFileSize(options.map) : MapFileSize{std::filesystem::file_size(options.map), {}};
@@ -79,6 +104,7 @@ void printInfo(const InfoOptions& options) {
                   scale["bytes_per_square_metre"].get<double>());
     std::printf("\n");
   }
+  printCurves(curves);
   const auto history = metadata.find("history");
   if (history == metadata.end()) return;
   const Json steps = Json::parse(history->second, nullptr, false);
@@ -95,6 +121,8 @@ void addInfo(CLI::App& app) {
       "bytes/m^2: compressed bytes per square metre of occupied cells (a cell counts side^2).\n"
       "Example: gaussmap info street.gmap --json");
   command->add_option("map", options->map, "map (.gmap, or PCD of Gaussians)")->required();
+  command->add_option("--plot", options->plot.path, "draw the error against the number of Gaussians (.svg)");
+  command->add_flag("--force", options->plot.force, "replace an existing plot");
   command->add_flag("--json", options->json, "print for machines");
   command->callback([options] { printInfo(*options); });
 }

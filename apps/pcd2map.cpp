@@ -3,10 +3,10 @@
 #include <cmath>
 #include <iostream>
 
+#include "budget.h"
 #include "common.h"
 #include "gaussmap/io/scan_list.h"
 #include "gaussmap/mapping/build.h"
-#include "gaussmap/mapping/refine.h"
 
 namespace gaussmap::app {
 namespace {
@@ -15,7 +15,7 @@ struct Pcd2mapOptions {
   ScanInput input;
   Output output;
   MapOptions map;
-  RefineOptions refine;
+  BudgetInput budget;
   bool json = false;
 };
 
@@ -28,8 +28,9 @@ void pcd2map(const Pcd2mapOptions& options) {
   std::vector<std::filesystem::path> inputs = listScans({options.input.paths.begin(), options.input.paths.end()});
   if (!options.input.poses.empty()) inputs.push_back(options.input.poses);
   checkMapOutput(options.output, inputs);
+  checkBudget(options.budget);
   const double start = now();
-  const int threads = options.refine.threads;
+  const int threads = options.budget.refine.threads;
 
   const std::vector<ScanSource> scans = findScans(options.input);
   ProgressBar bar;
@@ -44,7 +45,6 @@ void pcd2map(const Pcd2mapOptions& options) {
                              " beyond --max-range");
   GaussianMap<3> map = build<3>(accumulated.moments, options.map);
   accumulated.moments = MomentGrid<3>(options.map.resolution);  // its memory is not needed twice
-  if (options.refine.budget > 1.0) map = refine<3>(std::move(map), options.refine);
 
   const Json points = {{"read", counts.read},
                        {"accepted", counts.accepted},
@@ -52,12 +52,9 @@ void pcd2map(const Pcd2mapOptions& options) {
                        {"at_sensor", counts.at_sensor},
                        {"beyond_range", counts.beyond_range}};
   MapMetadata metadata;
-  addHistory(metadata, {{"command", "pcd2map"},
-                        {"version", GAUSSMAP_VERSION},
-                        {"scans", scans.size()},
-                        {"points", points},
-                        {"budget", options.refine.budget},
-                        {"seed", options.refine.seed}});
+  map = refineWithin(
+      std::move(map), options.budget, metadata,
+      {{"command", "pcd2map"}, {"version", GAUSSMAP_VERSION}, {"scans", scans.size()}, {"points", points}});
   saveMap<3>(map, options.output.path, metadata, {options.output.force, SaveOptions().compression, threads});
 
   const std::uintmax_t bytes = std::filesystem::file_size(options.output.path);
@@ -99,14 +96,8 @@ void addPcd2map(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--noise", options->map.noise, "noise floor of every Gaussian [m]; 0: resolution / 20")
       ->capture_default_str();
-  command
-      ->add_option("--budget", options->refine.budget,
-                   "Gaussians per coarse scale, as a multiple of its occupied cells; 1: no refinement")
-      ->check(numberBetween(1.0, 1e6))
-      ->capture_default_str();
+  addBudgetOptions(*command, options->budget);
   addScanOptions(*command, options->input);
-  addSeed(*command, options->refine.seed, "of the random swaps");
-  addThreads(*command, options->refine.threads);
   command->add_flag("--json", options->json, "print the result for machines");
   command->callback([options] { pcd2map(*options); });
 }

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // gaussmap refine MAP -o OUT --budget X: another number of Gaussians at the coarse scales.
-#include "gaussmap/mapping/refine.h"
-
 #include <iostream>
 
+#include "budget.h"
 #include "common.h"
 #include "gaussmap/io/map_pcd.h"
 
@@ -13,22 +12,19 @@ namespace {
 struct RefineCommand {
   std::string map;
   Output output;
-  RefineOptions refine;
+  BudgetInput budget;
   bool json = false;
 };
 
 void run(const RefineCommand& options) {
   checkMapOutput(options.output, {options.map});
+  checkBudget(options.budget);
   const double start = now();
   MapMetadata metadata;
   GaussianMap<3> map = loadAnyMap(options.map, &metadata);
-  map = refine<3>(std::move(map), options.refine);
-  addHistory(metadata, {{"command", "refine"},
-                        {"version", GAUSSMAP_VERSION},
-                        {"budget", options.refine.budget},
-                        {"seed", options.refine.seed}});
+  map = refineWithin(std::move(map), options.budget, metadata, {{"command", "refine"}, {"version", GAUSSMAP_VERSION}});
   saveMap<3>(map, options.output.path, metadata,
-             {options.output.force, SaveOptions().compression, options.refine.threads});
+             {options.output.force, SaveOptions().compression, options.budget.refine.threads});
   const std::uintmax_t bytes = std::filesystem::file_size(options.output.path);
   if (options.json) {
     printJson({{"map", options.output.path}, {"scales", scalesOf(map)}, {"bytes", bytes}, {"seconds", now() - start}});
@@ -49,13 +45,7 @@ void addRefine(CLI::App& app) {
       "Example: gaussmap refine street.gmap -o fine.gmap --budget 4");
   command->add_option("map", options->map, "map (.gmap, or PCD of Gaussians)")->required();
   addOutput(*command, options->output, "map file to write (.gmap)");
-  command
-      ->add_option("--budget", options->refine.budget,
-                   "Gaussians per coarse scale, as a multiple of its occupied cells; 1: one per cell")
-      ->check(numberBetween(1.0, 1e6))
-      ->capture_default_str();
-  addSeed(*command, options->refine.seed, "of the random swaps");
-  addThreads(*command, options->refine.threads);
+  addBudgetOptions(*command, options->budget);
   command->add_flag("--json", options->json, "print the result for machines");
   command->callback([options] { run(*options); });
 }

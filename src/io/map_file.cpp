@@ -242,6 +242,37 @@ void link(MapScale<D>& finer, const std::vector<std::uint32_t>& labels, MapScale
   coarse.first_child.push_back(static_cast<std::uint32_t>(finer.keys.size()));
 }
 
+template <int D>
+void writeMap(Database& database, const GaussianMap<D>& map, const MapMetadata& metadata, const SaveOptions& options) {
+  database.execute("PRAGMA application_id = " + std::to_string(kMapFileId) +
+                   "; PRAGMA user_version = " + std::to_string(kMapFileVersion) +
+                   "; BEGIN;"
+                   "CREATE TABLE metadata (name TEXT PRIMARY KEY, value TEXT NOT NULL);"
+                   "CREATE TABLE tiles (scale INTEGER NOT NULL, x INTEGER NOT NULL, y INTEGER NOT NULL,"
+                   " z INTEGER NOT NULL, cells INTEGER NOT NULL, gaussians INTEGER NOT NULL, data BLOB NOT NULL,"
+                   " PRIMARY KEY (scale, x, y, z));");
+  MapMetadata entries = {{"dimension", std::to_string(D)},
+                         {"resolution", exactText(map.options().resolution)},
+                         {"noise", exactText(map.options().noise)},
+                         {"ratio", std::to_string(map.options().ratio)},
+                         {"scales", std::to_string(map.scales())}};
+  for (int s = 0; s < map.scales(); ++s) {
+    entries["cells." + std::to_string(s)] = std::to_string(map.cellCount(s));
+    entries["gaussians." + std::to_string(s)] = std::to_string(map.gaussianCount(s));
+  }
+  for (const auto& [name, value] : metadata) entries[kPrefix + name] = value;
+  Statement insert_entry(database, "INSERT INTO metadata VALUES (?, ?)");
+  for (const auto& [name, value] : entries) {
+    insert_entry.bind(1, std::string_view(name));
+    insert_entry.bind(2, std::string_view(value));
+    insert_entry.step();
+    insert_entry.reset();
+  }
+  Statement insert_tile(database, "INSERT INTO tiles VALUES (?, ?, ?, ?, ?, ?, ?)");
+  for (int s = map.scales() - 1; s >= 0; --s) writeTiles<D>(map, s, options, insert_tile);
+  database.execute("COMMIT");
+}
+
 }  // namespace
 
 template <int D>
@@ -252,35 +283,21 @@ void saveMap(const GaussianMap<D>& map, const std::filesystem::path& path, const
   AtomicFile file(path);
   {
     Database database(file.partPath(), Database::Mode::CreateForBulkWrite);
-    database.execute("PRAGMA application_id = " + std::to_string(kMapFileId) +
-                     "; PRAGMA user_version = " + std::to_string(kMapFileVersion) +
-                     "; BEGIN;"
-                     "CREATE TABLE metadata (name TEXT PRIMARY KEY, value TEXT NOT NULL);"
-                     "CREATE TABLE tiles (scale INTEGER NOT NULL, x INTEGER NOT NULL, y INTEGER NOT NULL,"
-                     " z INTEGER NOT NULL, cells INTEGER NOT NULL, gaussians INTEGER NOT NULL, data BLOB NOT NULL,"
-                     " PRIMARY KEY (scale, x, y, z));");
-    MapMetadata entries = {{"dimension", std::to_string(D)},
-                           {"resolution", exactText(map.options().resolution)},
-                           {"noise", exactText(map.options().noise)},
-                           {"ratio", std::to_string(map.options().ratio)},
-                           {"scales", std::to_string(map.scales())}};
-    for (int s = 0; s < map.scales(); ++s) {
-      entries["cells." + std::to_string(s)] = std::to_string(map.cellCount(s));
-      entries["gaussians." + std::to_string(s)] = std::to_string(map.gaussianCount(s));
-    }
-    for (const auto& [name, value] : metadata) entries[kPrefix + name] = value;
-    Statement insert_entry(database, "INSERT INTO metadata VALUES (?, ?)");
-    for (const auto& [name, value] : entries) {
-      insert_entry.bind(1, std::string_view(name));
-      insert_entry.bind(2, std::string_view(value));
-      insert_entry.step();
-      insert_entry.reset();
-    }
-    Statement insert_tile(database, "INSERT INTO tiles VALUES (?, ?, ?, ?, ?, ?, ?)");
-    for (int s = map.scales() - 1; s >= 0; --s) writeTiles<D>(map, s, options, insert_tile);
-    database.execute("COMMIT");
+    writeMap<D>(database, map, metadata, options);
   }
   file.commit();
+}
+
+template <int D>
+std::uintmax_t savedSize(const GaussianMap<D>& map, const MapMetadata& metadata, const SaveOptions& options) {
+  Database database("map in memory", Database::Mode::InMemory);
+  writeMap<D>(database, map, metadata, options);
+  const auto pragma = [&](const std::string& name) {
+    Statement statement(database, "PRAGMA " + name);
+    statement.step();
+    return static_cast<std::uintmax_t>(statement.integer(0));
+  };
+  return pragma("page_count") * pragma("page_size");
 }
 
 template <int D>
@@ -335,6 +352,8 @@ MapFileSize mapFileSize(const std::filesystem::path& path) {
 
 template void saveMap<2>(const GaussianMap<2>&, const std::filesystem::path&, const MapMetadata&, const SaveOptions&);
 template void saveMap<3>(const GaussianMap<3>&, const std::filesystem::path&, const MapMetadata&, const SaveOptions&);
+template std::uintmax_t savedSize<2>(const GaussianMap<2>&, const MapMetadata&, const SaveOptions&);
+template std::uintmax_t savedSize<3>(const GaussianMap<3>&, const MapMetadata&, const SaveOptions&);
 template GaussianMap<2> loadMap<2>(const std::filesystem::path&);
 template GaussianMap<3> loadMap<3>(const std::filesystem::path&);
 

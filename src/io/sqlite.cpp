@@ -46,9 +46,9 @@ Database::Database(const std::filesystem::path& path, Mode mode) : path_(path), 
   const bool read_only = mode == Mode::ReadOnly;
   sqlite3* raw = nullptr;
   const int code =
-      read_only
-          ? sqlite3_open_v2(immutableUri(path).c_str(), &raw, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr)
-          : sqlite3_open_v2(absolutePath(path).c_str(), &raw, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
+      read_only ? sqlite3_open_v2(immutableUri(path).c_str(), &raw, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr)
+                : sqlite3_open_v2(mode == Mode::InMemory ? ":memory:" : absolutePath(path).c_str(), &raw,
+                                  SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
   handle_.reset(raw);
   if (code != SQLITE_OK) fail("cannot be opened");
   if (read_only)

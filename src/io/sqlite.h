@@ -18,7 +18,7 @@ namespace gaussmap {
 /// journals beside it, and with no more steps and no longer values than its size warrants, whatever its pages say.
 class Database {
  public:
-  enum class Mode { ReadOnly, CreateForBulkWrite };
+  enum class Mode { ReadOnly, CreateForBulkWrite, InMemory };  // InMemory: the path is a name for messages
   Database(const std::filesystem::path& path, Mode mode);
 
   void execute(const std::string& sql);

@@ -1,76 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gaussmap/mapping/refine.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
-#include "gaussmap/mapping/build.h"
-#include "gaussmap/mapping/cell_error.h"
-#include "gaussmap/mapping/coarsen.h"
-#include "mapping/room.h"
+#include "mapping/refine_helpers.h"
 
 namespace gaussmap {
 namespace {
-
-GaussianMap<3> roomMap(std::size_t points = 60000, int ratio = 5, int scales = 3) {
-  Random random(1);
-  MapOptions options;
-  options.ratio = ratio;
-  options.scales = scales;
-  return build(roomPoints(random, points), options);
-}
-
-RefineOptions withBudget(double budget) {
-  RefineOptions options;
-  options.budget = budget;
-  return options;
-}
-
-/// The Gaussians of scale s - 1 under a cell of scale s, about the cell's centre.
-std::vector<Gaussian<3>> dataUnder(const GaussianMap<3>& map, std::size_t cell, int s) {
-  std::vector<Gaussian<3>> data;
-  gatherUnder(map.scale(s - 1), map.grid(), s - 1, map.childCells(cell, s), data);
-  return data;
-}
-
-std::vector<Gaussian<3>> clustersOf(const GaussianMap<3>& map, std::size_t cell, int s) {
-  std::vector<Gaussian<3>> clusters;
-  const IndexRange range = map.gaussiansOf(cell, s);
-  for (std::size_t i = range.first; i < range.last; ++i) clusters.push_back(map.localGaussian(i, s));
-  return clusters;
-}
-
-double errorOf(const GaussianMap<3>& map, std::size_t cell, int s) {
-  return cellError(clustersOf(map, cell, s), dataUnder(map, cell, s));
-}
-
-double meanError(const GaussianMap<3>& map, int s) {
-  double sum = 0.0;
-  for (std::size_t cell = 0; cell < map.cellCount(s); ++cell) sum += errorOf(map, cell, s);
-  return sum / static_cast<double>(map.cellCount(s));
-}
-
-template <int D>
-void expectSameBytes(const GaussianMap<D>& a, const GaussianMap<D>& b) {
-  ASSERT_EQ(a.scales(), b.scales());
-  for (int s = 0; s < a.scales(); ++s) {
-    const MapScale<D>&p = a.scale(s), &q = b.scale(s);
-    EXPECT_EQ(p.keys, q.keys);
-    EXPECT_EQ(p.first_child, q.first_child);
-    EXPECT_EQ(p.first_gaussian, q.first_gaussian);
-    EXPECT_EQ(p.parent, q.parent);
-    EXPECT_TRUE(p.moments == q.moments);
-    ASSERT_EQ(p.gaussians.size(), q.gaussians.size());
-    for (std::size_t i = 0; i < p.gaussians.size(); ++i) {
-      ASSERT_EQ(p.gaussians[i].mean, q.gaussians[i].mean);
-      ASSERT_EQ(p.gaussians[i].cov, q.gaussians[i].cov);
-      ASSERT_EQ(p.gaussians[i].weight, q.gaussians[i].weight);
-    }
-  }
-}
 
 TEST(CellError, IsTheMeanSquaredDistanceInStandardDeviationsOfTheData) {
   // Data at 0 and 3 with sigma 1 and 0.5, reference at 1: (1 + (2 / 0.5)^2) / 2; a second one at 3 takes the far datum.
@@ -111,22 +50,31 @@ TEST(Refine, NamesTheOptionThatItRefuses) {
   EXPECT_EQ(messageFor([](RefineOptions& o) { o.threads = -1; }).find("threads"), 0u);
 }
 
-TEST(Refine, LeavesAnEmptyMapAndASingleScaleAlone) {
-  EXPECT_TRUE(refine(GaussianMap<3>()).empty());
+/// What every method promises.
+class RefineBy : public testing::TestWithParam<RefineMethod> {};
+
+std::string nameOf(const testing::TestParamInfo<RefineMethod>& method) {
+  return method.param == RefineMethod::Insert ? "Insertion" : "Agglomeration";
+}
+INSTANTIATE_TEST_SUITE_P(All, RefineBy, testing::ValuesIn(kMethods), nameOf);
+
+TEST_P(RefineBy, LeavesAnEmptyMapAndASingleScaleAlone) {
+  EXPECT_TRUE(refine(GaussianMap<3>(), withBudget(3.0, GetParam())).empty());
   const GaussianMap<3> single = roomMap(1000, 5, 1);
-  expectSameBytes(refine(single), single);
+  expectSameBytes(refine(single, withBudget(3.0, GetParam())), single);
 }
 
-TEST(Refine, WithABudgetOfOneIsCoarsening) {
+TEST_P(RefineBy, WithABudgetOfOneIsCoarsening) {
   const GaussianMap<3> map = roomMap();
-  expectSameBytes(refine(map, withBudget(1.0)), map);
-  expectSameBytes(refine(refine(map, withBudget(4.0)), withBudget(1.0)), map);  // older clusters are forgotten
+  expectSameBytes(refine(map, withBudget(1.0, GetParam())), map);
+  expectSameBytes(refine(refine(map, withBudget(4.0, GetParam())), withBudget(1.0, GetParam())),
+                  map);  // older clusters are forgotten
 }
 
-TEST(Refine, KeepsToItsBudgetAndUsesIt) {
+TEST_P(RefineBy, KeepsToItsBudgetAndUsesIt) {
   const GaussianMap<3> map = roomMap();
   for (double budget : {1.0, 1.003, 1.5, 2.0, 3.7}) {
-    const GaussianMap<3> refined = refine(map, withBudget(budget));
+    const GaussianMap<3> refined = refine(map, withBudget(budget, GetParam()));
     EXPECT_EQ(refined.gaussianCount(0), map.gaussianCount(0));
     for (int s = 1; s < map.scales(); ++s) {
       EXPECT_EQ(refined.cellCount(s), map.cellCount(s));
@@ -136,20 +84,20 @@ TEST(Refine, KeepsToItsBudgetAndUsesIt) {
   }
 }
 
-TEST(Refine, StopsAtAClusterForEveryFinerGaussian) {
+TEST_P(RefineBy, StopsAtAClusterForEveryFinerGaussian) {
   const GaussianMap<3> map = roomMap(3000, 3, 2);
-  const GaussianMap<3> refined = refine(map, withBudget(1e300));
+  const GaussianMap<3> refined = refine(map, withBudget(1e300, GetParam()));
   EXPECT_EQ(refined.gaussianCount(1), refined.gaussianCount(0));
   EXPECT_EQ(meanError(refined, 1), 0.0);
 }
 
-TEST(Refine, KeepsTheNumberOfPointsAtEveryScale) {
-  const GaussianMap<3> refined = refine(roomMap());
+TEST_P(RefineBy, KeepsTheNumberOfPointsAtEveryScale) {
+  const GaussianMap<3> refined = refine(roomMap(), withBudget(3.0, GetParam()));
   for (int s = 0; s < refined.scales(); ++s) EXPECT_EQ(refined.weight(s), 60000.0);
 }
 
-TEST(Refine, MakesEveryClusterTheMomentMatchOfItsChildren) {
-  const GaussianMap<3> refined = refine(roomMap());
+TEST_P(RefineBy, MakesEveryClusterTheMomentMatchOfItsChildren) {
+  const GaussianMap<3> refined = refine(roomMap(), withBudget(3.0, GetParam()));
   for (int s = 1; s < refined.scales(); ++s) {
     for (std::size_t cell = 0; cell < refined.cellCount(s); ++cell) {
       const std::vector<Gaussian<3>> data = dataUnder(refined, cell, s);
@@ -168,59 +116,7 @@ TEST(Refine, MakesEveryClusterTheMomentMatchOfItsChildren) {
   }
 }
 
-TEST(Refine, GivesTheSameBytesAtAnyNumberOfThreads) {
-  const GaussianMap<3> map = roomMap(60000, 4, 3);
-  for (int queue : {0, 1, 500}) {  // 500: rounds that are worth several threads
-    RefineOptions options = withBudget(4.0);
-    options.queue = queue;
-    options.threads = 1;
-    const GaussianMap<3> alone = refine(map, options);
-    for (int threads : {2, 3, 0}) {
-      options.threads = threads;
-      expectSameBytes(refine(map, options), alone);
-    }
-  }
-}
-
-TEST(Refine, DependsOnTheSeedAndTheFinestScaleOnly) {
-  const GaussianMap<3> map = roomMap(20000);
-  RefineOptions options;
-  options.seed = 5;
-  const GaussianMap<3> refined = refine(map, options);
-  expectSameBytes(refine(map, options), refined);
-  expectSameBytes(refine(refined, options), refined);
-  options.seed = 6;
-  EXPECT_NE(refine(map, options).scale(0).parent, refined.scale(0).parent);
-}
-
-TEST(Refine, LowersTheErrorWithTheBudget) {
-  const GaussianMap<3> map = roomMap();
-  double before = std::numeric_limits<double>::infinity();
-  for (double budget : {1.0, 1.5, 2.0, 3.0, 5.0}) {
-    const double error = meanError(refine(map, withBudget(budget)), 1);
-    EXPECT_LT(error, before);
-    before = error;
-  }
-  EXPECT_LT(before, 0.2 * meanError(map, 1));
-}
-
-TEST(Refine, SpendsWhereTheErrorIs) {  // one at a time: no cell that was left alone is worse than the worst refined one
-  RefineOptions options = withBudget(1.5);
-  options.queue = 1;
-  const GaussianMap<3> map = roomMap();
-  const GaussianMap<3> refined = refine(map, options);
-  double worst_alone = 0.0, least_refined = std::numeric_limits<double>::infinity();
-  for (std::size_t cell = 0; cell < map.cellCount(1); ++cell) {
-    const double error = errorOf(map, cell, 1);  // scale 0 is the same in both
-    if (refined.gaussiansOf(cell, 1).size() == 1)
-      worst_alone = std::max(worst_alone, error);
-    else
-      least_refined = std::min(least_refined, error);
-  }
-  EXPECT_GE(least_refined, worst_alone);
-}
-
-TEST(Refine, PutsThePoleOfACellIntoAClusterOfItsOwn) {
+TEST_P(RefineBy, PutsThePoleOfACellIntoAClusterOfItsOwn) {
   // One coarse cell of 4 m: a floor of 60 x 60 points and a pole of 1 m; two Gaussians for it.
   std::vector<Vector<3>> points;
   for (int i = 0; i < 60; ++i)
@@ -229,7 +125,7 @@ TEST(Refine, PutsThePoleOfACellIntoAClusterOfItsOwn) {
   MapOptions map_options;
   map_options.ratio = 40;
   map_options.scales = 2;
-  const GaussianMap<3> refined = refine(build(points, map_options), withBudget(2.0));
+  const GaussianMap<3> refined = refine(build(points, map_options), withBudget(2.0, GetParam()));
   ASSERT_EQ(refined.gaussianCount(1), 2u);
   const Gaussian<3> a = refined.gaussian(0, 1), b = refined.gaussian(1, 1);
   const Gaussian<3>& floor = a.weight > b.weight ? a : b;
@@ -240,19 +136,55 @@ TEST(Refine, PutsThePoleOfACellIntoAClusterOfItsOwn) {
   EXPECT_NEAR(pole.cov(0, 0), 0.005 * 0.005, 1e-9);
 }
 
-TEST(Refine, HandlesOneCellAndOnePoint) {
+TEST_P(RefineBy, DependsOnTheFinestScaleOnly) {
+  const GaussianMap<3> map = roomMap(20000);
+  const GaussianMap<3> refined = refine(map, withBudget(3.0, GetParam()));
+  expectSameBytes(refine(map, withBudget(3.0, GetParam())), refined);
+  expectSameBytes(refine(refined, withBudget(3.0, GetParam())), refined);
+}
+
+TEST_P(RefineBy, GivesTheSameBytesAtAnyNumberOfThreads) {
+  const GaussianMap<3> map = roomMap(60000, 4, 3);
+  for (const MergeCost cost : {MergeCost::Volume, MergeCost::Runnalls}) {
+    for (const int queue : {0, 1, 500}) {  // 500: rounds of insertions that are worth several threads
+      RefineOptions options = withBudget(4.0, GetParam());
+      options.merge_cost = cost;
+      options.queue = queue;
+      options.threads = 1;
+      const GaussianMap<3> alone = refine(map, options);
+      for (int threads : {2, 3, 0}) {
+        options.threads = threads;
+        expectSameBytes(refine(map, options), alone);
+      }
+    }
+  }
+}
+
+TEST_P(RefineBy, LowersTheErrorWithTheBudget) {
+  const GaussianMap<3> map = roomMap();
+  double before = std::numeric_limits<double>::infinity();
+  for (double budget : {1.0, 1.5, 2.0, 3.0, 5.0}) {
+    const double error = meanError(refine(map, withBudget(budget, GetParam())), 1);
+    EXPECT_LT(error, before);
+    before = error;
+  }
+  EXPECT_LT(before, 0.25 * meanError(map, 1));
+}
+
+TEST_P(RefineBy, HandlesOneCellAndOnePoint) {
   MapOptions options;
   options.scales = 3;
   const GaussianMap<2> one = build(std::vector<Vector<2>>{{0.5, 0.5}}, options);
-  expectSameBytes(refine(one), one);
-  const GaussianMap<2> two = refine(build(std::vector<Vector<2>>{{0.05, 0.05}, {0.45, 0.45}}, options));
+  expectSameBytes(refine(one, withBudget(3.0, GetParam())), one);
+  const GaussianMap<2> two =
+      refine(build(std::vector<Vector<2>>{{0.05, 0.05}, {0.45, 0.45}}, options), withBudget(3.0, GetParam()));
   EXPECT_EQ(two.gaussianCount(1), 2u);  // budget 3, but there are only two
   EXPECT_EQ(two.gaussianCount(2), 2u);
   EXPECT_EQ(two.parentOf(1, 0), 1u);
   EXPECT_EQ(two.parentOf(1, 1), 1u);
 }
 
-TEST(Refine, WorksInThePlane) {
+TEST_P(RefineBy, WorksInThePlane) {
   Random random(9);
   std::vector<Vector<2>> points;
   for (int i = 0; i < 5000; ++i) {
@@ -261,7 +193,7 @@ TEST(Refine, WorksInThePlane) {
   }
   MapOptions options;
   options.resolution = 0.05;
-  const GaussianMap<2> refined = refine(build(points, options));
+  const GaussianMap<2> refined = refine(build(points, options), withBudget(3.0, GetParam()));
   EXPECT_EQ(refined.gaussianCount(1), 3 * refined.cellCount(1));
   EXPECT_EQ(refined.weight(2), 5000.0);
 }

@@ -33,6 +33,10 @@ template <int D>
 void saveMap(const GaussianMap<D>& map, const std::filesystem::path& path, const MapMetadata& metadata = {},
              const SaveOptions& options = {});
 
+/// How large the file would be that saveMap writes, to the byte [bytes]. Takes as much memory.
+template <int D>
+std::uintmax_t savedSize(const GaussianMap<D>& map, const MapMetadata& metadata = {}, const SaveOptions& options = {});
+
 /// What saveMap wrote, equal to it in every bit. Throws FileError, saying what is wrong, if the file is no map, of a
 /// newer version, of another dimension, truncated or altered.
 template <int D>

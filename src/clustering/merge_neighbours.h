@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "merge_table.h"
+
+namespace gaussmap {
+
+/// Clusters on their way to one, with the merges made so far. Slots stay ordered by the smallest datum of their
+/// clusters: of two that merge, the first slot stays.
+template <int D>
+struct MergeHistory {
+  MergeHistory(const std::vector<Gaussian<D>>& data, const std::vector<double>& areas, MergeCost cost)
+      : table(data, areas, cost), node(data.size()) {
+    dendrogram.size = data.size();
+    dendrogram.merges.reserve(data.empty() ? 0 : data.size() - 1);
+    for (std::size_t j = 0; j < node.size(); ++j) node[j] = static_cast<std::uint32_t>(j);
+  }
+
+  /// Slots a < b.
+  void merge(std::size_t a, std::size_t b, double cost) {
+    table.unite(a, b);
+    dendrogram.merges.push_back({node[a], node[b], cost});
+    node[a] = static_cast<std::uint32_t>(dendrogram.size + dendrogram.merges.size() - 1);
+    node[b] = kGone;
+  }
+
+  /// Closes the gaps; returns the old slots of 0, 1, ...
+  std::vector<std::uint32_t> compact() {
+    std::vector<std::uint32_t> kept;
+    for (std::size_t slot = 0; slot < node.size(); ++slot)
+      if (node[slot] != kGone) kept.push_back(static_cast<std::uint32_t>(slot));
+    for (std::size_t slot = 0; slot < kept.size(); ++slot) node[slot] = node[kept[slot]];
+    node.resize(kept.size());
+    table.keep(kept);
+    return kept;
+  }
+
+  static constexpr std::uint32_t kGone = 0xFFFFFFFFu;
+  MergeTable<D> table;
+  std::vector<std::uint32_t> node;  // of the dendrogram, per slot
+  Dendrogram dendrogram;
+};
+
+/// Merges down to `until` clusters, the candidates restricted to pairs of which one is among the `neighbours` nearest
+/// of the other, by their means. A union inherits the neighbours of both; they are looked for anew whenever half of the
+/// clusters are gone. Leaves the table compact.
+template <int D>
+void mergeNeighbours(MergeHistory<D>& history, std::size_t neighbours, std::size_t until);
+
+}  // namespace gaussmap

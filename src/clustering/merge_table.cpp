@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Compiled without contraction into fused multiply-adds: the same bits on every machine.
+#include "merge_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "small_cholesky.h"
+
+namespace gaussmap {
+namespace {
+
+// The loops are compiled for several instruction sets; the loader takes the best one. All round alike.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
+#define GAUSSMAP_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define GAUSSMAP_CLONES
+#endif
+// A loop over pairs becomes a vector loop only if the loops inside it are gone by then.
+#define GAUSSMAP_UNROLL _Pragma("GCC unroll 16")
+#define GAUSSMAP_INLINE inline __attribute__((always_inline))
+
+constexpr double kLargest = 1e300;  // of a determinant, so that no cost is infinite or NaN
+constexpr double kSmallest = 1e-300;
+constexpr double kMostWeight = 1e100;
+constexpr std::size_t kMostData = 0x7FFFFFFF;
+
+/// ln x within 2 ulp for x in [1e-300, 1e300], from + - * / only: libraries' own differ from machine to machine.
+GAUSSMAP_INLINE double naturalLogarithm(double x) {
+  constexpr std::uint64_t kRootHalf = 0x3FE6A09E667F3BCDull, kBias = 1023;
+  std::uint64_t bits;
+  std::memcpy(&bits, &x, sizeof bits);
+  const std::uint64_t exponent = (bits - kRootHalf + (kBias << 52)) >> 52;  // biased
+  const std::uint64_t mantissa_bits = bits - ((exponent - kBias) << 52), exponent_bits = exponent | 0x433ull << 52;
+  double mantissa, power;
+  std::memcpy(&mantissa, &mantissa_bits, sizeof mantissa);  // in [sqrt(1/2), sqrt(2))
+  std::memcpy(&power, &exponent_bits, sizeof power);        // 2^52 + exponent
+  power -= 0x1.0p52 + static_cast<double>(kBias);
+  const double s = (mantissa - 1.0) / (mantissa + 1.0), ss = s * s;  // ln m = 2 artanh s, |s| < 0.172
+  double series = 1.0 / 21.0;
+  GAUSSMAP_UNROLL
+  for (int odd = 19; odd >= 3; odd -= 2) series = series * ss + 1.0 / odd;
+  return power * 0.693147180559945309417 + 2.0 * (s + s * ss * series);
+}
+
+/// det of a symmetric matrix from its upper triangle by rows.
+template <int D>
+GAUSSMAP_INLINE double determinant(const double* m) {
+  if constexpr (D == 2)
+    return m[0] * m[2] - m[1] * m[1];
+  else
+    return m[0] * (m[3] * m[5] - m[4] * m[4]) - m[1] * (m[1] * m[5] - m[4] * m[2]) + m[2] * (m[1] * m[4] - m[3] * m[2]);
+}
+
+/// det S of a cluster with scatter w S; rounding and overflow kept away from the costs.
+template <int D>
+GAUSSMAP_INLINE double covarianceDeterminant(const double* scatter, double inverse_weight) {
+  double det = determinant<D>(scatter);
+  GAUSSMAP_UNROLL
+  for (int axis = 0; axis < D; ++axis) det *= inverse_weight;
+  det = det < kLargest ? det : kLargest;  // NaN too
+  return det > kSmallest ? det : kSmallest;
+}
+
+template <int D>
+double sizeOf(const double* scatter, double weight, MergeCost cost) {
+  const double det = covarianceDeterminant<D>(scatter, 1.0 / weight);
+  return cost == MergeCost::Runnalls ? weight * naturalLogarithm(det) : std::sqrt(det);
+}
+
+template <int D, MergeCost Cost>
+GAUSSMAP_INLINE void costLoop(const MergeColumns<D>& columns, std::size_t i, std::size_t first, std::size_t last,
+                              double* __restrict out) {
+  constexpr int kScatter = MergeColumns<D>::kScatter;
+  constexpr int kRow[] = {0, 0, D == 2 ? 1 : 0, 1, 1, 2}, kColumn[] = {0, 1, D == 2 ? 1 : 2, 1, 2, 2};
+  double mean_i[D], scatter_i[kScatter];
+  const double *mean[D], *scatter[kScatter];
+  GAUSSMAP_UNROLL
+  for (int axis = 0; axis < D; ++axis) {
+    mean_i[axis] = columns.mean[axis][i];
+    mean[axis] = columns.mean[axis] + first;
+  }
+  GAUSSMAP_UNROLL
+  for (int entry = 0; entry < kScatter; ++entry) {
+    scatter_i[entry] = columns.scatter[entry][i];
+    scatter[entry] = columns.scatter[entry] + first;
+  }
+  const double weight_i = columns.weight[i], size_i = columns.size[i];
+  const double *weight = columns.weight + first, *size = columns.size + first;
+  const std::size_t count = last - first;
+  for (std::size_t j = 0; j < count; ++j) {
+    const double sum = weight_i + weight[j];
+    const double inverse = 1.0 / sum;
+    const double factor = weight_i * weight[j] * inverse;
+    double difference[D], both[kScatter];
+    GAUSSMAP_UNROLL
+    for (int axis = 0; axis < D; ++axis) difference[axis] = mean_i[axis] - mean[axis][j];
+    GAUSSMAP_UNROLL
+    for (int entry = 0; entry < kScatter; ++entry)
+      both[entry] =
+          (scatter_i[entry] + scatter[entry][j]) + factor * difference[kRow[entry]] * difference[kColumn[entry]];
+    const double det = covarianceDeterminant<D>(both, inverse);
+    const double apart = size_i + size[j];
+    if constexpr (Cost == MergeCost::Runnalls)
+      out[j] = 0.5 * (sum * naturalLogarithm(det) - apart);
+    else if constexpr (Cost == MergeCost::VolumeArea)
+      out[j] = (std::sqrt(det) - apart) * std::sqrt(sum);
+    else
+      out[j] = std::sqrt(det) - apart;
+  }
+}
+
+#define GAUSSMAP_COST_LOOP(D, Cost)                                                                     \
+  GAUSSMAP_CLONES void costs##Cost##D(const MergeColumns<D>& columns, std::size_t i, std::size_t first, \
+                                      std::size_t last, double* out) {                                  \
+    costLoop<D, MergeCost::Cost>(columns, i, first, last, out);                                         \
+  }
+GAUSSMAP_COST_LOOP(2, Volume)
+GAUSSMAP_COST_LOOP(3, Volume)
+GAUSSMAP_COST_LOOP(2, Runnalls)
+GAUSSMAP_COST_LOOP(3, Runnalls)
+GAUSSMAP_COST_LOOP(2, VolumeArea)
+GAUSSMAP_COST_LOOP(3, VolumeArea)
+#undef GAUSSMAP_COST_LOOP
+
+[[noreturn]] void refuse(std::size_t j, const std::string& what) {
+  throw std::invalid_argument("agglomerate: datum " + std::to_string(j) + " has no " + what);
+}
+
+template <int D>
+void checkData(const std::vector<Gaussian<D>>& data, const std::vector<double>& areas) {
+  if (areas.size() != data.size())
+    throw std::invalid_argument("agglomerate: " + std::to_string(areas.size()) + " areas for " +
+                                std::to_string(data.size()) + " data");
+  if (data.size() > kMostData) throw std::invalid_argument("agglomerate: 2^31 data or more");
+  const auto usable = [](double value) { return value > 0.0 && value < kMostWeight; };
+  for (std::size_t j = 0; j < data.size(); ++j) {
+    if (!usable(data[j].weight)) refuse(j, "usable weight");
+    if (!usable(areas[j])) refuse(j, "usable area");
+    if (!data[j].mean.allFinite()) refuse(j, "finite mean");
+    if (!SmallCholesky<D>(data[j].cov).positive)
+      throw std::domain_error("agglomerate: the covariance of datum " + std::to_string(j) +
+                              " is not positive definite");
+  }
+}
+
+/// Half-way between the extremes: the same for any order of the data.
+template <int D>
+Vector<D> middleOf(const std::vector<Gaussian<D>>& data) {
+  if (data.empty()) return Vector<D>::Zero();
+  Vector<D> low = data.front().mean, high = low;
+  for (const Gaussian<D>& datum : data) {
+    low = low.cwiseMin(datum.mean);
+    high = high.cwiseMax(datum.mean);
+  }
+  return 0.5 * low + 0.5 * high;
+}
+
+}  // namespace
+
+template <int D>
+MergeTable<D>::MergeTable(const std::vector<Gaussian<D>>& data, const std::vector<double>& areas, MergeCost cost)
+    : cost_(cost), slots_(data.size()) {
+  checkData<D>(data, areas);
+  constexpr int kScatter = MergeColumns<D>::kScatter;
+  values_.resize(slots_ * (D + kScatter + 2));
+  double* column = values_.data();
+  const auto nextColumn = [&] { return std::exchange(column, column + slots_); };
+  for (double*& mean : columns_.mean) mean = nextColumn();
+  for (double*& scatter : columns_.scatter) scatter = nextColumn();
+  columns_.weight = nextColumn();
+  columns_.size = nextColumn();
+
+  const Vector<D> middle = middleOf(data);
+  for (std::size_t j = 0; j < slots_; ++j) {
+    const double weight = cost == MergeCost::Runnalls ? data[j].weight : areas[j];
+    double scatter[kScatter];
+    for (int row = 0, entry = 0; row < D; ++row) {
+      columns_.mean[row][j] = data[j].mean(row) - middle(row);
+      for (int column_of = row; column_of < D; ++column_of, ++entry)
+        columns_.scatter[entry][j] = scatter[entry] = weight * data[j].cov(row, column_of);
+    }
+    columns_.weight[j] = weight;
+    columns_.size[j] = sizeOf<D>(scatter, weight, cost);
+  }
+}
+
+template <int D>
+void MergeTable<D>::costs(std::size_t i, std::size_t first, std::size_t last, double* out) const {
+  if constexpr (D == 2) {
+    if (cost_ == MergeCost::Volume) return costsVolume2(columns_, i, first, last, out);
+    if (cost_ == MergeCost::Runnalls) return costsRunnalls2(columns_, i, first, last, out);
+    costsVolumeArea2(columns_, i, first, last, out);
+  } else {
+    if (cost_ == MergeCost::Volume) return costsVolume3(columns_, i, first, last, out);
+    if (cost_ == MergeCost::Runnalls) return costsRunnalls3(columns_, i, first, last, out);
+    costsVolumeArea3(columns_, i, first, last, out);
+  }
+}
+
+template <int D>
+void MergeTable<D>::unite(std::size_t a, std::size_t b) {
+  constexpr int kScatter = MergeColumns<D>::kScatter;
+  const double weight_a = columns_.weight[a], weight_b = columns_.weight[b];
+  const double sum = weight_a + weight_b;
+  const double factor = weight_a * weight_b * (1.0 / sum);
+  double difference[D], scatter[kScatter];
+  for (int axis = 0; axis < D; ++axis) {
+    double* mean = columns_.mean[axis];
+    difference[axis] = mean[a] - mean[b];
+    mean[a] = (weight_a * mean[a] + weight_b * mean[b]) / sum;  // eq. (9)
+  }
+  for (int row = 0, entry = 0; row < D; ++row)
+    for (int column = row; column < D; ++column, ++entry) {  // eq. (10), times the weight
+      double* entries = columns_.scatter[entry];
+      scatter[entry] = (entries[a] + entries[b]) + factor * difference[row] * difference[column];
+      entries[a] = scatter[entry];
+    }
+  columns_.weight[a] = sum;
+  columns_.size[a] = sizeOf<D>(scatter, sum, cost_);
+  columns_.size[b] = -std::numeric_limits<double>::infinity();
+}
+
+template <int D>
+void MergeTable<D>::keep(const std::vector<std::uint32_t>& kept) {
+  const auto squeeze = [&](double* column) {
+    for (std::size_t slot = 0; slot < kept.size(); ++slot) column[slot] = column[kept[slot]];
+  };
+  for (double* mean : columns_.mean) squeeze(mean);
+  for (double* scatter : columns_.scatter) squeeze(scatter);
+  squeeze(columns_.weight);
+  squeeze(columns_.size);
+  slots_ = kept.size();
+}
+
+GAUSSMAP_CLONES std::size_t firstMinimum(const double* values, std::size_t size) {
+  constexpr std::size_t kLanes = 16;
+  double least = values[0];
+  std::size_t i = 0;
+  if (size >= kLanes) {
+    double lane[kLanes];
+    for (std::size_t l = 0; l < kLanes; ++l) lane[l] = values[l];
+    for (i = kLanes; i + kLanes <= size; i += kLanes)
+      for (std::size_t l = 0; l < kLanes; ++l) lane[l] = values[i + l] < lane[l] ? values[i + l] : lane[l];
+    for (std::size_t l = 0; l < kLanes; ++l) least = lane[l] < least ? lane[l] : least;
+  }
+  for (; i < size; ++i) least = values[i] < least ? values[i] : least;
+  i = 0;
+  while (values[i] != least) ++i;
+  return i;
+}
+
+template class MergeTable<2>;
+template class MergeTable<3>;
+
+}  // namespace gaussmap

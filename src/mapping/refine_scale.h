@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gaussmap/mapping/coarsen.h"
+#include "gaussmap/mapping/refine.h"
+
+namespace gaussmap {
+
+/// The clusters of a refined cell and which of them each finer Gaussian under it belongs to.
+template <int D>
+struct CellClusters {
+  std::vector<Gaussian<D>> references;  // empty: still the one Gaussian of coarsen()
+  std::vector<int> labels;
+};
+
+/// One coarse scale fresh from coarsen(), about to be refined.
+template <int D>
+struct CoarseScale {
+  MapScale<D>& finer;
+  MapScale<D>& coarse;
+  const Grid<D>& grid;
+  int finer_scale;
+
+  std::size_t cells() const { return coarse.keys.size(); }
+  IndexRange children(std::size_t cell) const { return {coarse.first_child[cell], coarse.first_child[cell + 1]}; }
+  /// G(phi(c)) as indices of the finer scale.
+  IndexRange gaussiansUnder(std::size_t cell) const {
+    const IndexRange finer_cells = children(cell);
+    return {gaussiansOf(finer, finer_cells.first).first, gaussiansOf(finer, finer_cells.last - 1).last};
+  }
+  /// G(phi(c)), means about the cell's centre.
+  std::vector<Gaussian<D>> dataUnder(std::size_t cell) const {
+    std::vector<Gaussian<D>> data;
+    gatherUnder(finer, grid, finer_scale, children(cell), data);
+    return data;
+  }
+
+  /// How many Gaussians a multiple of the cells allows beyond one a cell.
+  std::size_t extraOf(double multiple) const {
+    const double most = std::floor(multiple * static_cast<double>(cells()));
+    // More than one per finer Gaussian is never used; the bound also keeps the conversion in range.
+    const auto all = static_cast<std::size_t>(std::min(most, static_cast<double>(finer.gaussianCount())));
+    return all - std::min(all, cells());
+  }
+  /// The same by the options: max_gaussians of this scale if given, else the budget.
+  /// Throws std::invalid_argument if max_gaussians leaves a cell without a Gaussian.
+  std::size_t extraAllowed(const RefineOptions& options) const {
+    const auto most = options.max_gaussians.find(finer_scale + 1);
+    if (most == options.max_gaussians.end()) return extraOf(options.budget);
+    if (most->second < cells())
+      throw std::invalid_argument("max_gaussians = " + std::to_string(most->second) + ": scale " +
+                                  std::to_string(finer_scale + 1) + " has " + std::to_string(cells()) +
+                                  " occupied cells, which hold at least one each; take coarser cells");
+    return most->second - cells();
+  }
+
+  /// Replaces the Gaussians of the coarse scale, links the finer ones to them.
+  void replaceGaussians(const std::vector<CellClusters<D>>& clusters) {
+    std::vector<Gaussian<D>> gaussians;
+    coarse.first_gaussian.clear();
+    for (std::size_t cell = 0; cell < clusters.size(); ++cell) {
+      const auto first = static_cast<std::uint32_t>(gaussians.size());
+      coarse.first_gaussian.push_back(first);
+      const IndexRange under = gaussiansUnder(cell);
+      const auto& [references, labels] = clusters[cell];
+      for (std::size_t i = under.first; i < under.last; ++i)
+        finer.parent[i] = first + static_cast<std::uint32_t>(labels.empty() ? 0 : labels[i - under.first]);
+      if (references.empty())
+        gaussians.push_back(coarse.gaussians[cell]);
+      else
+        gaussians.insert(gaussians.end(), references.begin(), references.end());
+    }
+    coarse.first_gaussian.push_back(static_cast<std::uint32_t>(gaussians.size()));
+    coarse.gaussians = std::move(gaussians);
+  }
+};
+
+/// Refines a scale as RefineMethod::Insert says.
+template <int D>
+void refineByInsertion(CoarseScale<D>& scale, const RefineOptions& options);
+
+/// RefineMethod::Agglomerate: one dendrogram a cell, from which every number of Gaussians can be cut.
+template <int D>
+class ScaleCuts {
+ public:
+  /// `areas` = occupied finest cells under each finer Gaussian. The scale must outlive the cuts.
+  ScaleCuts(const CoarseScale<D>& scale, const std::vector<double>& areas, const RefineOptions& options);
+
+  int scale() const { return scale_.finer_scale + 1; }
+  std::size_t extraOf(double multiple) const { return scale_.extraOf(multiple); }
+  std::size_t extraAllowed(const RefineOptions& options) const { return scale_.extraAllowed(options); }
+  /// The Gaussians that the finer scale allows beyond one a cell.
+  std::size_t mostExtra() const;
+
+  /// The clusters of every cell when `extra` Gaussians are there beyond one a cell.
+  std::vector<CellClusters<D>> clusters(std::size_t extra) const;
+  /// The same as a scale without links to others.
+  MapScale<D> cut(std::size_t extra) const;
+
+ private:
+  const CoarseScale<D>& scale_;
+  int threads_;
+  std::vector<Dendrogram> dendrograms_;
+  std::vector<std::vector<double>> gains_;
+};
+
+/// refine() by agglomeration where `choose` says for every coarse scale, from the finest up, how many Gaussians it
+/// gets beyond one a cell.
+template <int D>
+GaussianMap<D> refineByChoice(GaussianMap<D> map, const RefineOptions& options,
+                              const std::function<std::size_t(const ScaleCuts<D>&)>& choose);
+
+}  // namespace gaussmap

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gaussmap/mapping/error_curve.h"
+
+#include <gtest/gtest.h>
+
+#include "gaussmap/io/map_file.h"
+#include "gaussmap/mapping/build.h"
+#include "io/temporary_directory.h"
+#include "map/random_clouds.h"
+
+namespace gaussmap {
+namespace {
+
+GaussianMapOctree cloudMap(std::uint64_t seed) {
+  return build<3>(test::randomCloud<3>(4000, seed), {0.1, 5, 3, 0.0});
+}
+
+CurveOptions quick() {
+  CurveOptions curve;
+  curve.samples = 2000;
+  curve.data = 5000;
+  return curve;
+}
+
+void expectEqualScales(const GaussianMapOctree& a, const GaussianMapOctree& b) {
+  for (int s = 0; s < a.scales(); ++s) {
+    ASSERT_EQ(a.gaussianCount(s), b.gaussianCount(s));
+    EXPECT_EQ(a.scale(s).parent, b.scale(s).parent);
+    for (std::size_t i = 0; i < a.gaussianCount(s); ++i)
+      EXPECT_EQ(a.localGaussian(i, s).mean, b.localGaussian(i, s).mean);
+  }
+}
+
+TEST(ErrorCurve, ComesWithTheMapThatRefineMakes) {
+  const GaussianMapOctree map = cloudMap(51);
+  expectEqualScales(refineWithCurves(map, {}, quick()).map, refine<3>(map));
+}
+
+TEST(ErrorCurve, StartsAtOnePerCellRisesInGaussiansAndFallsInError) {
+  const GaussianMapOctree map = cloudMap(52);
+  const RefinedMap refined = refineWithCurves(map, {}, quick());
+  ASSERT_EQ(refined.curves.size(), 2u);
+  for (std::size_t c = 0; c < 2; ++c) {
+    const ErrorCurve& curve = refined.curves[c];
+    const int scale = static_cast<int>(c) + 1;
+    EXPECT_EQ(curve.scale, scale);
+    EXPECT_EQ(curve.points.front().gaussians, map.cellCount(scale));
+    for (std::size_t i = 1; i < curve.points.size(); ++i)
+      EXPECT_GT(curve.points[i].gaussians, curve.points[i - 1].gaussians);
+    EXPECT_LT(curve.points.back().mean, 0.7 * curve.points.front().mean);
+  }
+}
+
+TEST(ErrorCurve, IsTheSameAtOneAndTwoThreads) {
+  const GaussianMapOctree map = cloudMap(53);
+  RefineOptions one, two;
+  one.threads = 1;
+  two.threads = 2;
+  const RefinedMap a = refineWithCurves(map, one, quick()), b = refineWithCurves(map, two, quick());
+  expectEqualScales(a.map, b.map);
+  for (std::size_t c = 0; c < a.curves.size(); ++c)
+    for (std::size_t i = 0; i < a.curves[c].points.size(); ++i) {
+      EXPECT_EQ(a.curves[c].points[i].q95, b.curves[c].points[i].q95);
+      EXPECT_EQ(a.curves[c].points[i].mean, b.curves[c].points[i].mean);
+    }
+}
+
+TEST(MaxGaussians, AreNeverExceededAndCanDifferByScale) {
+  Random random(54);
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    const GaussianMapOctree map = cloudMap(60 + seed);
+    RefineOptions options;
+    for (int s = 1; s < 3; ++s) options.max_gaussians[s] = map.cellCount(s) + random.below(2 * map.cellCount(s));
+    for (const RefineMethod method : {RefineMethod::Agglomerate, RefineMethod::Insert}) {
+      options.method = method;
+      const GaussianMapOctree refined = refine<3>(map, options);
+      for (int s = 1; s < 3; ++s) {
+        EXPECT_LE(refined.gaussianCount(s), options.max_gaussians[s]);
+        EXPECT_NEAR(refined.weight(s), 4000.0, 1e-6);
+      }
+    }
+  }
+}
+
+TEST(MaxGaussians, BelowTheNumberOfCellsAreRefused) {
+  const GaussianMapOctree map = cloudMap(55);
+  RefineOptions options;
+  options.max_gaussians[1] = map.cellCount(1) - 1;
+  EXPECT_THROW(refine<3>(map, options), std::invalid_argument);
+  options.max_gaussians = {{0, 100000}};
+  EXPECT_THROW(refine<3>(map, options), std::invalid_argument);
+  options.max_gaussians = {{3, 100000}};
+  EXPECT_THROW(refine<3>(map, options), std::invalid_argument);
+}
+
+TEST(MaxError, IsReachedOrSaidNotToBe) {
+  for (const double most : {0.02, 0.1, 0.2, 0.5, 5.0}) {
+    const RefinedToError result = refineToError(cloudMap(56), most, {}, quick());
+    for (int s = 1; s < 3; ++s) {
+      const ErrorNotReached* missed = nullptr;
+      for (const ErrorNotReached& scale : result.not_reached)
+        if (scale.scale == s) missed = &scale;
+      const GaussianMapOctree& map = result.refined.map;
+      if (missed != nullptr) {
+        EXPECT_GT(missed->q95, most);
+        EXPECT_EQ(map.gaussianCount(s), map.gaussianCount(s - 1));
+        continue;
+      }
+      // The curve of a map that is refined to these very numbers says what the error is.
+      RefineOptions same;
+      for (int scale = 1; scale < 3; ++scale) same.max_gaussians[scale] = map.gaussianCount(scale);
+      CurveOptions at = quick();
+      at.multiples = {static_cast<double>(map.gaussianCount(s)) / static_cast<double>(map.cellCount(s)) * (1 + 1e-12)};
+      const ErrorPoint point = refineWithCurves(map, same, at).curves[static_cast<std::size_t>(s) - 1].points.front();
+      ASSERT_EQ(point.gaussians, map.gaussianCount(s));
+      EXPECT_LE(point.q95, most);
+    }
+  }
+  EXPECT_THROW(refineToError(cloudMap(56), 0.0, {}), std::invalid_argument);
+}
+
+TEST(MaxBytes, AreNeverExceededAndNearlyUsed) {
+  const GaussianMapOctree map = cloudMap(57);
+  const auto bytesOf = [](const RefinedMap& refined) { return savedSize<3>(refined.map); };
+  const std::uintmax_t least = savedSize<3>(map);
+  for (const std::uintmax_t most : {least, least + 20000, least + 50000}) {
+    const RefinedMap refined = refineToBytes(map, most, bytesOf, {}, quick());
+    EXPECT_LE(bytesOf(refined), most);
+    EXPECT_GE(bytesOf(refined) + 25000, most);
+  }
+  EXPECT_THROW(refineToBytes(map, least / 2, bytesOf, {}, quick()), std::invalid_argument);
+}
+
+TEST(SavedSize, IsTheSizeOfTheFile) {
+  const test::TemporaryDirectory folder;
+  const std::filesystem::path path = folder.path() / "map.gmap";
+  const GaussianMapOctree map = refine<3>(cloudMap(58));
+  saveMap<3>(map, path, {{"note", "x"}}, {true});
+  EXPECT_EQ(std::filesystem::file_size(path), savedSize<3>(map, {{"note", "x"}}));
+}
+
+}  // namespace
+}  // namespace gaussmap
