@@ -1,21 +1,43 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap simulate -o DIR: scans of a built-in scene whose surfaces are known exactly.
-#include <cstdio>
+// gaussmap simulate [SCENE] -o DIR: scans of a built-in world whose surfaces are known exactly.
+#include "gaussmap/simulation/simulation.h"
+
+#include <algorithm>
 #include <iostream>
+#include <map>
 
 #include "common.h"
 #include "gaussmap/io/pcd_writer.h"
-#include "gaussmap/simulation/lidar.h"
-#include "gaussmap/simulation/scene.h"
+#include "gaussmap/io/ply.h"
 
 namespace gaussmap::app {
 namespace {
 
+const std::map<std::string, WorldName> kWorlds = {
+    {"corner", WorldName::Corner}, {"street", WorldName::Street}, {"hall", WorldName::Hall}, {"plan", WorldName::Plan}};
+
 struct SimulateCommand {
+  std::string scene = "corner";
   Output output;
-  LidarOptions lidar;
+  SimulationOptions world;
+  double noise = LidarOptions().noise;
+  std::optional<int> rings, columns;
+  std::optional<double> field, max_range;
+  int threads = 0;
   std::uint64_t seed = 1;
 };
+
+void adapt(LidarOptions& lidar, const SimulateCommand& options) {
+  if (options.field) throw UsageError("--field-of-view: only the laser of 'plan' has one");
+  lidar.rings = options.rings.value_or(lidar.rings);
+  lidar.columns = options.columns.value_or(lidar.columns);
+}
+
+void adapt(PlanarLaserOptions& laser, const SimulateCommand& options) {
+  if (options.rings) throw UsageError("--rings: the laser of 'plan' has one ring");
+  laser.beams = options.columns.value_or(laser.beams);
+  laser.field_deg = options.field.value_or(laser.field_deg);
+}
 
 std::filesystem::path makeFolder(const std::filesystem::path& folder) {
   std::error_code error;
@@ -24,54 +46,110 @@ std::filesystem::path makeFolder(const std::filesystem::path& folder) {
   return folder;
 }
 
-std::string scanName(std::size_t number) {
-  char name[32];
-  std::snprintf(name, sizeof name, "scan%02zu.pcd", number);
-  return name;
+/// scan00.pcd ... with as many digits as the last of them needs, so that names sort as numbers do.
+std::vector<std::filesystem::path> scanPaths(const std::filesystem::path& folder, std::size_t count) {
+  const std::size_t digits = std::max<std::size_t>(2, std::to_string(count - 1).size());
+  std::vector<std::filesystem::path> paths;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string number = std::to_string(i);
+    paths.push_back(folder / ("scan" + std::string(digits - number.size(), '0') + number + ".pcd"));
+  }
+  return paths;
+}
+
+/// Scans that an earlier run left would be taken for scans of this one.
+void refuseOtherScans(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& own) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (entry.path().extension() == ".pcd" && std::find(own.begin(), own.end(), entry.path()) == own.end())
+      throw UsageError(entry.path().string() + " would lie among the new scans: remove it, or take another directory");
+}
+
+void writeScan(const std::filesystem::path& path, const SimulatedScan& scan, bool with_labels) {
+  std::vector<float> xyz;
+  xyz.reserve(3 * scan.points.size());
+  for (const Eigen::Vector3d& point : scan.points)
+    for (int axis = 0; axis < 3; ++axis) xyz.push_back(static_cast<float>(point(axis)));
+  std::vector<std::uint32_t> labels;
+  for (const SurfaceLabel label : scan.labels) labels.push_back(static_cast<std::uint32_t>(label));
+  std::vector<PcdOutput> fields;
+  const char* const names[] = {"x", "y", "z"};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    fields.push_back(pcdOutput(names[axis], xyz.data() + (xyz.empty() ? 0 : axis), 1, 3 * sizeof(float)));
+  if (with_labels) fields.push_back(pcdOutput("label", labels.data()));
+  writePcd(path, scan.points.size(), fields, scan.pose);
 }
 
 void run(const SimulateCommand& options) {
-  const std::filesystem::path folder = options.output.path;
-  const std::filesystem::path scans = makeFolder(folder / "scans");
-  const std::vector<Pose> poses = demoTrajectory();
-  const std::filesystem::path truth_path = folder / "truth.pcd";
-  checkOutput({truth_path.string(), options.output.force});
-  for (std::size_t i = 0; i < poses.size(); ++i) checkOutput({(scans / scanName(i)).string(), options.output.force});
+  if (options.world.moving && options.scene != "street") throw UsageError("--moving: only in the scene 'street'");
+  Simulation simulation = makeSimulation(kWorlds.at(options.scene), options.world);
+  std::visit(
+      [&](auto& sensor) {
+        adapt(sensor, options);
+        sensor.noise = options.noise;
+        sensor.max_range = options.max_range.value_or(sensor.max_range);
+        sensor.threads = options.threads;
+      },
+      simulation.sensor);
 
-  const Scene scene = demoScene();
+  const std::filesystem::path folder = options.output.path, scans = makeFolder(folder / "scans");
+  const std::vector<std::filesystem::path> paths = scanPaths(scans, simulation.trajectory.size());
+  std::vector<std::filesystem::path> outputs = {folder / "truth.pcd", folder / "truth.ply", folder / "trajectory.tum"};
+  outputs.insert(outputs.end(), paths.begin(), paths.end());
+  for (const std::filesystem::path& path : outputs) checkOutput({path.string(), options.output.force});
+  refuseOtherScans(scans, paths);
+
   std::vector<Vector<3>> truth;
   std::size_t points = 0;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    const SimulatedScan scan = simulateScan(scene, poses[i], options.lidar, options.seed + i);
-    writePcd(scans / scanName(i), {scan.points.begin(), scan.points.end()}, PcdPrecision::Float, scan.pose);
-    truth.insert(truth.end(), scan.truth.begin(), scan.truth.end());
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const SimulatedScan scan = simulateScan(simulation, i, options.seed);
+    writeScan(paths[i], scan, options.world.moving);
+    for (std::size_t j = 0; j < scan.truth.size(); ++j)
+      if (scan.labels[j] == SurfaceLabel::Static) truth.push_back(scan.truth[j]);
     points += scan.points.size();
   }
-  writePcd(truth_path, truth, PcdPrecision::Double);
-  std::cout << folder.string() << ": " << poses.size() << " scans, " << points
-            << " points, and where their rays met the surfaces: truth.pcd\n";
+  writePcd(folder / "truth.pcd", truth, PcdPrecision::Double);
+  writePly(folder / "truth.ply", simulation.world.mesh());
+  writeTum(folder / "trajectory.tum", simulation.trajectory);
+  std::cout << folder.string() << ": " << options.scene << ", " << paths.size()
+            << (paths.size() == 1 ? " scan, " : " scans, ") << points << " points";
+  if (options.world.moving) std::cout << " (" << points - truth.size() << " on moving objects)";
+  std::cout << "; the truth: truth.ply (" << simulation.world.mesh().triangles.size()
+            << " triangles), truth.pcd (where rays met them), trajectory.tum\n";
 }
 
 }  // namespace
 
 void addSimulate(CLI::App& app) {
   auto options = std::make_shared<SimulateCommand>();
-  CLI::App* command =
-      app.add_subcommand("simulate", "Scans of a floor, two walls and a pole, with the exact truth beside them");
+  CLI::App* command = app.add_subcommand("simulate", "Scans of a built-in scene, with the exact truth beside them");
   command->footer(
-      "Writes DIR/scans/scan00.pcd ... (sensor frame, pose in VIEWPOINT) and DIR/truth.pcd (map frame).\n"
-      "Example: gaussmap simulate -o corner && gaussmap pcd2map corner/scans -o corner.gmap");
+      "Scenes: corner (floor, two walls, a pole), street (150 m: fronts, trees, poles, parked cars, a fence), hall\n"
+      "(a hall, a corridor, furnished rooms), plan (a floor plan with walls of 12 cm for a planar laser).\n"
+      "Writes DIR/scans/scan00.pcd ... (sensor frame, pose in VIEWPOINT; with --moving a field label: 1 = on a moving\n"
+      "object) and, in the map frame, DIR/truth.ply (all that stands still; the rays are cast against these very\n"
+      "triangles), DIR/truth.pcd (where they met them, without noise) and DIR/trajectory.tum.\n"
+      "Example: gaussmap simulate street -o street --moving && gaussmap pcd2map street/scans -o street.gmap");
+  command->add_option("scene", options->scene, "what to scan")->check(CLI::IsMember(kWorlds))->capture_default_str();
   addOutput(*command, options->output, "directory to write to");
-  command->add_option("--noise", options->lidar.noise, "standard deviation of the ranges [m]")
+  command
+      ->add_option("--scans", options->world.scans, "scans, spread over the same way; default: 5, 20, 30, 240 by scene")
+      ->check(CLI::Range(1, 100000));
+  command->add_flag("--moving", options->world.moving, "three cars drive and two pedestrians walk through the street");
+  command->add_option("--noise", options->noise, "standard deviation of the ranges [m]")
       ->check(numberBetween(0.0, 1e3))
       ->capture_default_str();
-  command->add_option("--rings", options->lidar.rings, "lasers of the lidar")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command->add_option("--columns", options->lidar.columns, "directions in a turn")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
+  command->add_option("--rings", options->rings, "lasers of the lidar; default: 32, street 64")
+      ->check(CLI::Range(1, 1000));
+  command
+      ->add_option("--columns", options->columns,
+                   "directions in a turn, or beams of the planar laser; default: 1800, plan 361")
+      ->check(CLI::Range(1, 100000));
+  command->add_option("--field-of-view", options->field, "of the planar laser [degree]; default: 180")
+      ->check(numberBetween(1.0, 360.0));
+  command->add_option("--max-range", options->max_range, "of the sensor [m]; default: 60, street 80, plan 30")
+      ->check(numberBetween(1e-3, 1e9));
   addSeed(*command, options->seed, "of the noise");
+  addThreads(*command, options->threads);
   command->callback([options] { run(*options); });
 }
 

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
-#include "gaussmap/evaluation/nearest_distances.h"
+#include "common/parallel.h"
+#include "evaluation/nearest_search.h"
+#include "gaussmap/evaluation/mesh_distance.h"
 
 namespace gaussmap {
 namespace {
@@ -37,33 +40,124 @@ DistanceSummary summarise(std::vector<double> distances) {
   return summary;
 }
 
-HausdorffResult hausdorff(const std::vector<Vector<3>>& a, const std::vector<Vector<3>>& b, int threads) {
-  if (a.empty() || b.empty()) throw std::invalid_argument("the Hausdorff distance of an empty set is not defined");
-  return {summarise(nearestDistances(a, b, threads)), summarise(nearestDistances(b, a, threads))};
+namespace {
+
+HausdorffResult summariseBoth(const std::vector<double>& forward, const std::vector<double>& backward, int threads) {
+  HausdorffResult result;
+  parallelFor(2, threads, 1, [&](std::size_t i) {
+    (i == 0 ? result.forward : result.backward) = summarise(i == 0 ? forward : backward);
+  });
+  return result;
 }
 
-MapHausdorff evaluateMap(const GaussianMap<3>& map, int scale, const std::vector<Vector<3>>& reference,
-                         const SampleOptions& options) {
-  if (reference.empty()) throw std::invalid_argument("no reference points to compare the map with");
-  const MapSamples<3> samples = sampleMap(map, scale, options);
+void checkSet(const std::vector<Vector<3>>& points, const char* name) {
+  if (points.empty()) throw std::invalid_argument("the Hausdorff distance of an empty set is not defined");
+  checkPoints(points, name);
+}
+
+}  // namespace
+
+HausdorffResult hausdorff(const std::vector<Vector<3>>& a, const std::vector<Vector<3>>& b, int threads,
+                          PointDistances* distances) {
+  checkSet(a, "a");
+  checkSet(b, "b");
+  const PointTreePair trees(a, b, threads);
+  std::vector<double> forward = nearestDistances(trees.a(), trees.b(), threads);
+  std::vector<double> backward = nearestDistances(trees.b(), trees.a(), threads);
+  const HausdorffResult result = summariseBoth(forward, backward, threads);
+  if (distances != nullptr) *distances = {a, std::move(forward), std::move(backward)};
+  return result;
+}
+
+HausdorffMaxima hausdorffMaxima(const std::vector<Vector<3>>& a, const std::vector<Vector<3>>& b, int threads) {
+  checkSet(a, "a");
+  checkSet(b, "b");
+  const PointTreePair trees(a, b, threads);
+  return {largestNearestDistance(trees.a(), trees.b(), threads), largestNearestDistance(trees.b(), trees.a(), threads)};
+}
+
+/// Points and their tree; in front of them a mesh if that is the reference.
+struct Reference::Parts {
+  explicit Parts(std::vector<Vector<3>> given)
+      : points(std::move(given)), tree((checkSet(points, "reference"), points)) {}
+
+  std::vector<double> forward(const std::vector<Vector<3>>& from, const PointTree& from_tree, int threads) const {
+    return mesh ? meshDistances(from, *mesh, threads) : nearestDistances(from_tree, tree, threads);
+  }
+
+  std::vector<Vector<3>> points;
+  PointTree tree;
+  std::optional<MeshDistance> mesh;
+  std::unique_ptr<const Parts> near;  // samples of a map: those near their means, nothing if there are none
+  bool is_map = false;
+};
+
+Reference::Reference(std::vector<Vector<3>> points) : parts_(std::make_shared<const Parts>(std::move(points))) {}
+
+Reference::Reference(const TriangleMesh& mesh, std::size_t samples, std::uint64_t seed) {
+  if (samples == 0) throw std::invalid_argument("a mesh as reference needs at least one sample");
+  const auto parts = std::make_shared<Parts>(sampleSurface(mesh, samples, seed));
+  parts->mesh.emplace(mesh);
+  parts_ = parts;
+}
+
+Reference::Reference(const MapSamples<3>& samples) {
+  if (samples.points.empty()) throw std::invalid_argument("no samples of the map to compare with");
+  const auto parts = std::make_shared<Parts>(samples.points);
+  parts->is_map = true;
+  std::vector<Vector<3>> near = samples.within(2.0);
+  if (!near.empty()) parts->near = std::make_unique<const Parts>(std::move(near));
+  parts_ = parts;
+}
+
+const std::vector<Vector<3>>& Reference::points() const {
+  return parts_->points;
+}
+
+HausdorffResult Reference::compare(const std::vector<Vector<3>>& subject, int threads,
+                                   PointDistances* distances) const {
+  checkSet(subject, "subject");
+  const PointTree tree(subject);
+  std::vector<double> forward = parts_->forward(subject, tree, threads);
+  std::vector<double> backward = nearestDistances(parts_->tree, tree, threads);
+  const HausdorffResult result = summariseBoth(forward, backward, threads);
+  if (distances != nullptr) *distances = {subject, std::move(forward), std::move(backward)};
+  return result;
+}
+
+MapHausdorff Reference::compare(const GaussianMap<3>& map, int scale, const SampleOptions& options,
+                                PointDistances* distances) const {
+  MapSamples<3> samples = sampleMap(map, scale, options);
   if (samples.points.empty()) throw std::invalid_argument("no samples: no Gaussian of the scale has mass in its cell");
 
   MapHausdorff result;
   result.gaussians = map.gaussianCount(scale);
   result.samples = samples.points.size();
   result.unplaced = samples.unplaced;
-  std::vector<double> forward = nearestDistances(samples.points, reference, options.threads);
-  result.all = {summarise(forward), summarise(nearestDistances(reference, samples.points, options.threads))};
+  PointDistances all;
+  result.all = compare(samples.points, options.threads, &all);
 
   const std::vector<Vector<3>> near = samples.within(2.0);
-  if (near.empty()) return result;
-  std::size_t kept = 0;  // the distances of the near samples are among those of all
-  for (std::size_t i = 0; i < forward.size(); ++i)
-    if (samples.mahalanobis[i] <= 2.0) forward[kept++] = forward[i];
-  forward.resize(kept);
-  result.within_two_sigma = {summarise(std::move(forward)),
-                             summarise(nearestDistances(reference, near, options.threads))};
+  if (!near.empty() && parts_->is_map && parts_->near) {
+    const PointTree tree(near);
+    result.within_two_sigma =
+        summariseBoth(parts_->near->forward(near, tree, options.threads),
+                      nearestDistances(parts_->near->tree, tree, options.threads), options.threads);
+  } else if (!near.empty() && !parts_->is_map) {
+    std::vector<double> forward;  // the distances of the near samples are among those of all
+    forward.reserve(near.size());
+    for (std::size_t i = 0; i < all.forward.size(); ++i)
+      if (samples.mahalanobis[i] <= 2.0) forward.push_back(all.forward[i]);
+    result.within_two_sigma =
+        summariseBoth(forward, nearestDistances(parts_->tree, PointTree(near), options.threads), options.threads);
+  }
+  if (distances != nullptr) *distances = std::move(all);
   return result;
+}
+
+MapHausdorff evaluateMap(const GaussianMap<3>& map, int scale, const std::vector<Vector<3>>& reference,
+                         const SampleOptions& options) {
+  return Reference(reference).compare(map, scale, options);
 }
 
 }  // namespace gaussmap

@@ -12,19 +12,47 @@ namespace gaussmap {
 namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
+constexpr std::size_t kGrain = 16;  // columns a task
+constexpr double kGrazing = 1e-4;
+
+void require(bool usable, const std::string& what) {
+  if (!usable) throw std::invalid_argument("lidar: " + what);
+}
+
+template <typename Options>
+void checkRanges(const Options& options) {
+  require(options.noise >= 0.0 && std::isfinite(options.noise),
+          "noise = " + std::to_string(options.noise) + ": must be a number of metres, not negative");
+  require(options.max_range > 0.0, "max_range = " + std::to_string(options.max_range) + ": must be positive");
+}
 
 void checkOptions(const LidarOptions& options) {
-  const auto require = [](bool usable, const std::string& what) {
-    if (!usable) throw std::invalid_argument("lidar: " + what);
-  };
   require(options.rings >= 1, "rings = " + std::to_string(options.rings) + ": at least one is needed");
   require(options.columns >= 1, "columns = " + std::to_string(options.columns) + ": at least one is needed");
   require(options.lowest_deg > -90.0 && options.lowest_deg <= options.highest_deg && options.highest_deg < 90.0,
           "elevations from " + std::to_string(options.lowest_deg) + " to " + std::to_string(options.highest_deg) +
               " degrees: must be within (-90, 90) and ascending");
-  require(options.noise >= 0.0 && std::isfinite(options.noise),
-          "noise = " + std::to_string(options.noise) + ": must be a number of metres, not negative");
-  require(options.max_range > 0.0, "max_range = " + std::to_string(options.max_range) + ": must be positive");
+  checkRanges(options);
+}
+
+void checkOptions(const PlanarLaserOptions& options) {
+  require(options.beams >= 1, "beams = " + std::to_string(options.beams) + ": at least one is needed");
+  require(options.field_deg > 0.0 && options.field_deg <= 360.0,
+          "field_deg = " + std::to_string(options.field_deg) + ": must be above 0 and at most 360");
+  checkRanges(options);
+}
+
+int columns(const LidarOptions& options) {
+  return options.columns;
+}
+int columns(const PlanarLaserOptions& options) {
+  return options.beams;
+}
+int rings(const LidarOptions& options) {
+  return options.rings;
+}
+int rings(const PlanarLaserOptions&) {
+  return 1;
 }
 
 /// Unit vector of one laser, sensor frame.
@@ -35,36 +63,72 @@ Eigen::Vector3d beam(const LidarOptions& options, int ring, int column) {
   return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth), std::sin(elevation)};
 }
 
-}  // namespace
+Eigen::Vector3d beam(const PlanarLaserOptions& options, int, int number) {
+  const int steps = options.field_deg < 360.0 ? options.beams - 1 : options.beams;
+  const double bearing = steps > 0 ? options.field_deg * (double(number) / steps - 0.5) * kDegree : 0.0;
+  return {std::cos(bearing), std::sin(bearing), 0.0};
+}
 
-SimulatedScan simulateScan(const Scene& scene, const Pose& sensor_pose, const LidarOptions& options,
-                           std::uint64_t seed) {
-  checkOptions(options);
-  checkScene(scene);
+/// `cast` gives what a ray meets first: std::optional<World::Hit>(ray).
+template <typename Options, typename Cast>
+SimulatedScan castAll(const Pose& sensor_pose, const Options& options, std::uint64_t seed, const Cast& cast) {
   if (const std::string fault = poseFault(sensor_pose); !fault.empty())
     throw std::invalid_argument("sensor pose: " + fault);
   SimulatedScan scan;
   scan.pose = normalised(sensor_pose);
   const Eigen::Matrix3d rotation = scan.pose.rotation.toRotationMatrix();
 
-  std::vector<SimulatedScan> columns(static_cast<std::size_t>(options.columns));
-  parallelFor(columns.size(), options.threads, 16, [&](std::size_t column) {
+  std::vector<SimulatedScan> parts(static_cast<std::size_t>(columns(options)));
+  parallelFor(parts.size(), options.threads, kGrain, [&](std::size_t column) {
+    SimulatedScan& part = parts[column];
     Random random = Random::forPart(seed, column);
-    for (int ring = 0; ring < options.rings; ++ring) {
+    for (int ring = 0; ring < rings(options); ++ring) {
       const Eigen::Vector3d direction = beam(options, ring, static_cast<int>(column));
       const Ray ray{scan.pose.translation, rotation * direction};
       const double noise = options.noise * random.normal();  // drawn for every ray: a new object moves no other point
-      const std::optional<double> range = scene.intersect(ray);
-      if (!range || *range > options.max_range || *range + noise <= 0.0) continue;
-      columns[column].points.emplace_back((*range + noise) * direction);
-      columns[column].truth.emplace_back(ray.origin + *range * ray.direction);
+      const std::optional<World::Hit> hit = cast(ray);
+      if (!hit || hit->cosine < kGrazing || hit->range > options.max_range || hit->range + noise <= 0.0) continue;
+      part.points.emplace_back((hit->range + noise) * direction);
+      part.truth.emplace_back(ray.origin + hit->range * ray.direction);
+      part.labels.push_back(hit->label);
     }
   });
-  for (const SimulatedScan& column : columns) {
-    scan.points.insert(scan.points.end(), column.points.begin(), column.points.end());
-    scan.truth.insert(scan.truth.end(), column.truth.begin(), column.truth.end());
+  for (const SimulatedScan& part : parts) {
+    scan.points.insert(scan.points.end(), part.points.begin(), part.points.end());
+    scan.truth.insert(scan.truth.end(), part.truth.begin(), part.truth.end());
+    scan.labels.insert(scan.labels.end(), part.labels.begin(), part.labels.end());
   }
   return scan;
+}
+
+template <typename Options>
+SimulatedScan scanWorld(const World& world, const Pose& pose, const Options& options, std::uint64_t seed, double time) {
+  checkOptions(options);
+  if (!std::isfinite(time)) throw std::invalid_argument("the time of a scan is not finite");
+  return castAll(pose, options, seed, [&](const Ray& ray) { return world.intersect(ray, time, options.max_range); });
+}
+
+}  // namespace
+
+SimulatedScan simulateScan(const World& world, const Pose& sensor_pose, const LidarOptions& options, std::uint64_t seed,
+                           double time) {
+  return scanWorld(world, sensor_pose, options, seed, time);
+}
+
+SimulatedScan simulateScan(const World& world, const Pose& sensor_pose, const PlanarLaserOptions& options,
+                           std::uint64_t seed, double time) {
+  return scanWorld(world, sensor_pose, options, seed, time);
+}
+
+SimulatedScan simulateScan(const Scene& scene, const Pose& sensor_pose, const LidarOptions& options,
+                           std::uint64_t seed) {
+  checkOptions(options);
+  checkScene(scene);
+  return castAll(sensor_pose, options, seed, [&](const Ray& ray) -> std::optional<World::Hit> {
+    const std::optional<double> range = scene.intersect(ray);
+    if (!range) return std::nullopt;
+    return World::Hit{*range, 1.0, SurfaceLabel::Static};
+  });
 }
 
 }  // namespace gaussmap

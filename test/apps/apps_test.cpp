@@ -445,7 +445,6 @@ TEST_F(Apps, NameTheMapThatIsDamaged) {
 
 TEST_F(Apps, TakeNoMapForAScan) {
   expectDataError("Gaussians of a map", {"pcd2map", scene("map.pcd"), "-o", own("x.gmap")});
-  expectDataError("Gaussians of a map", {"hausdorff", scene("map.gmap"), scene("map.pcd")});
   expectDataError(scene("map.gmap").string() + ": ", {"pcd2map", scene("map.gmap"), "-o", own("x.gmap")});
 }
 

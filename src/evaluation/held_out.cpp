@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gaussmap/evaluation/held_out.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+
+#include "common/parallel.h"
+
+namespace gaussmap {
+namespace {
+
+constexpr double kLogTwoPi = 1.8378770664093454836;
+constexpr double kNothing = -std::numeric_limits<double>::infinity();
+constexpr double kNegligible = 45.0;    // [nat]; e^-45 of a sum is lost in doubles
+constexpr std::size_t kGrain = 4096;    // points or Gaussians a task; at most so many points of a cell together
+constexpr std::size_t kCellGrain = 16;  // cells a task
+
+/// ln(w N(x; mu, Sigma)) as constant - |whiten (x - mu)|^2 / 2.
+template <int D>
+struct Factorised {
+  Vector<D> mean;    // [m] about the centre of its cell
+  Matrix<D> whiten;  // inverse of the lower Cholesky factor: lower too
+  double constant;
+
+  double logTerm(const Vector<D>& local) const {
+    const Vector<D> offset = local - mean;
+    double square = 0.0;
+    for (int row = 0; row < D; ++row) {
+      double sum = 0.0;
+      for (int column = 0; column <= row; ++column) sum += whiten(row, column) * offset(column);
+      square += sum * sum;
+    }
+    return constant - 0.5 * square;
+  }
+};
+
+template <int D>
+std::vector<Factorised<D>> factorise(const GaussianMap<D>& map, int scale, int threads) {
+  std::vector<Factorised<D>> all(map.gaussianCount(scale));
+  parallelFor(all.size(), threads, kGrain, [&](std::size_t i) {
+    const Gaussian<D> gaussian = map.localGaussian(i, scale);
+    const Eigen::LLT<Matrix<D>> llt(gaussian.cov);
+    if (!gaussian.cov.allFinite() || llt.info() != Eigen::Success)
+      throw std::domain_error("covariance is not positive definite; add a noise floor to its eigenvalues");
+    const Matrix<D> factor = llt.matrixL();
+    all[i] = {gaussian.mean, factor.template triangularView<Eigen::Lower>().solve(Matrix<D>::Identity()),
+              std::log(gaussian.weight) - factor.diagonal().array().log().sum() - 0.5 * D * kLogTwoPi};
+  });
+  return all;
+}
+
+/// A point's place in the input, under the cell it lies in.
+template <int D>
+struct PlacedPoint {
+  CellKey<D> key;
+  std::uint32_t index;
+};
+
+/// The points of one cell, or a part of them: a range of the sorted points.
+template <int D>
+struct PointsOfCell {
+  CellKey<D> key;
+  std::size_t first, last;
+};
+
+template <int D>
+std::vector<PlacedPoint<D>> sortByCell(const GaussianMap<D>& map, int scale, const std::vector<Vector<D>>& points,
+                                       int threads) {
+  if (points.size() > 0xFFFFFFFFu) throw std::invalid_argument("more than 2^32 - 1 points");
+  std::vector<PlacedPoint<D>> placed(points.size());
+  parallelFor(points.size(), threads, kGrain, [&](std::size_t i) {
+    placed[i] = {map.grid().keyOf(points[i], scale), static_cast<std::uint32_t>(i)};
+  });
+  std::sort(placed.begin(), placed.end(), [](const PlacedPoint<D>& a, const PlacedPoint<D>& b) {
+    return std::tie(a.key, a.index) < std::tie(b.key, b.index);
+  });
+  return placed;
+}
+
+template <int D>
+std::vector<PointsOfCell<D>> cellsOf(const std::vector<PlacedPoint<D>>& placed) {
+  std::vector<PointsOfCell<D>> cells;
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    if (cells.empty() || cells.back().key != placed[i].key || i - cells.back().first == kGrain)
+      cells.push_back({placed[i].key, i, i});
+    cells.back().last = i + 1;
+  }
+  return cells;
+}
+
+/// An occupied cell among the 3^D around a key.
+template <int D>
+struct Neighbour {
+  Vector<D> centre;  // [m]
+  IndexRange gaussians;
+  bool is_own;  // the cell of the key itself
+};
+
+template <int D>
+std::vector<Neighbour<D>> neighbours(const GaussianMap<D>& map, int scale, const CellKey<D>& key) {
+  std::vector<Neighbour<D>> found;
+  for (int code = 0; code < (D == 3 ? 27 : 9); ++code) {
+    CellKey<D> other = key;
+    bool fits = true;
+    int digits = code;
+    for (std::size_t axis = 0; axis < D; ++axis, digits /= 3) {
+      const std::int64_t shifted = std::int64_t{key[axis]} + digits % 3 - 1;
+      other[axis] = static_cast<std::int32_t>(shifted);
+      fits &= shifted == other[axis];
+    }
+    if (!fits) continue;
+    if (const auto cell = map.find(other, scale))
+      found.push_back({map.grid().centre(other, scale), map.gaussiansOf(*cell, scale), other == key});
+  }
+  return found;
+}
+
+template <int D>
+double logOfSum(const std::vector<Neighbour<D>>& around, const std::vector<Factorised<D>>& gaussians,
+                const Vector<D>& point, std::vector<double>& terms) {
+  terms.clear();
+  double largest = kNothing;
+  for (const Neighbour<D>& cell : around) {
+    const Vector<D> local = point - cell.centre;
+    for (std::size_t i = cell.gaussians.first; i < cell.gaussians.last; ++i) {
+      terms.push_back(gaussians[i].logTerm(local));
+      largest = std::max(largest, terms.back());
+    }
+  }
+  if (largest == kNothing) return kNothing;
+  double sum = 0.0;
+  for (const double term : terms)
+    if (term > largest - kNegligible) sum += std::exp(term - largest);
+  return largest + std::log(sum);
+}
+
+void checkOptions(const HeldOutOptions& options) {
+  if (!(options.background > 0.0 && options.background < 1.0))
+    throw std::invalid_argument("background = " + std::to_string(options.background) + ": must be between 0 and 1");
+  if (!(options.volume >= 0.0 && std::isfinite(options.volume)))
+    throw std::invalid_argument("volume = " + std::to_string(options.volume) + ": must not be negative");
+}
+
+template <int D>
+double boxVolume(const std::vector<Vector<D>>& points) {
+  Vector<D> low = points.front(), high = low;
+  for (const Vector<D>& point : points) {
+    low = low.cwiseMin(point);
+    high = high.cwiseMax(point);
+  }
+  return (high - low).cwiseMax(1.0).prod();
+}
+
+/// ln(e^a + e^b).
+double logOfBoth(double a, double b) {
+  const double large = std::max(a, b), small = std::min(a, b);
+  return large + std::log1p(std::exp(small - large));
+}
+
+/// ln p of every point, and how many lie in no cell.
+template <int D>
+struct Scores {
+  std::vector<double> values;
+  std::size_t in_no_cell = 0;
+};
+
+template <int D>
+Scores<D> score(const GaussianMap<D>& map, int scale, const std::vector<Vector<D>>& points, int threads) {
+  if (scale < 0 || scale >= map.scales())
+    throw std::out_of_range("scale " + std::to_string(scale) + ": the map has the scales 0 to " +
+                            std::to_string(map.scales() - 1));
+  const std::vector<PlacedPoint<D>> placed = sortByCell<D>(map, scale, points, threads);
+  const std::vector<PointsOfCell<D>> cells = cellsOf<D>(placed);
+  const std::vector<Factorised<D>> gaussians = factorise<D>(map, scale, threads);
+  const double log_weight = std::log(map.weight(scale));
+  std::vector<std::size_t> in_no_cell(cells.size());
+  Scores<D> scores{std::vector<double>(points.size(), kNothing), 0};
+  parallelFor(cells.size(), threads, kCellGrain, [&](std::size_t c) {
+    const std::vector<Neighbour<D>> around = neighbours<D>(map, scale, cells[c].key);
+    const bool occupied =
+        std::any_of(around.begin(), around.end(), [](const Neighbour<D>& cell) { return cell.is_own; });
+    if (!occupied) in_no_cell[c] = cells[c].last - cells[c].first;
+    if (around.empty()) return;
+    std::vector<double> terms;
+    for (std::size_t i = cells[c].first; i < cells[c].last; ++i)
+      scores.values[placed[i].index] = logOfSum<D>(around, gaussians, points[placed[i].index], terms) - log_weight;
+  });
+  scores.in_no_cell = std::accumulate(in_no_cell.begin(), in_no_cell.end(), std::size_t{0});
+  return scores;
+}
+
+}  // namespace
+
+template <int D>
+std::vector<double> logLikelihoods(const GaussianMap<D>& map, int scale, const std::vector<Vector<D>>& points,
+                                   int threads) {
+  return score<D>(map, scale, points, threads).values;
+}
+
+template <int D>
+HeldOutResult heldOutLogLikelihood(const GaussianMap<D>& map, int scale, const std::vector<Vector<D>>& points,
+                                   const HeldOutOptions& options) {
+  checkOptions(options);
+  if (points.empty()) throw std::invalid_argument("no points to score the map with");
+  Scores<D> scores = score<D>(map, scale, points, options.threads);
+  std::vector<double>& values = scores.values;
+
+  HeldOutResult result;
+  result.count = points.size();
+  result.in_no_cell = scores.in_no_cell;
+  result.volume = options.volume > 0.0 ? options.volume : boxVolume<D>(points);
+  result.floor = std::log(options.background) - std::log(result.volume);
+  double sum = 0.0, sum_inside = 0.0;
+  for (double& value : values) {
+    if (value == kNothing) {
+      ++result.nowhere;
+      value = result.floor;
+    } else {
+      sum_inside += value;
+      value = logOfBoth(std::log1p(-options.background) + value, result.floor);
+    }
+    sum += value;
+  }
+  result.mean = sum / static_cast<double>(result.count);
+  result.mean_inside = sum_inside / static_cast<double>(result.count - result.nowhere);  // NaN: 0 / 0
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  result.median = *middle;
+  return result;
+}
+
+#define GAUSSMAP_INSTANTIATE(D)                                                                                   \
+  template std::vector<double> logLikelihoods<D>(const GaussianMap<D>&, int, const std::vector<Vector<D>>&, int); \
+  template HeldOutResult heldOutLogLikelihood<D>(const GaussianMap<D>&, int, const std::vector<Vector<D>>&,       \
+                                                 const HeldOutOptions&);
+GAUSSMAP_INSTANTIATE(2)
+GAUSSMAP_INSTANTIATE(3)
+#undef GAUSSMAP_INSTANTIATE
+
+}  // namespace gaussmap
