@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs, builds, and runs the main job on a simulated scene: scans -> map, with and without refinement -> how far
-# each scale is from the truth. Usage: apps/demo.sh
+# Installs, builds, and runs the main job on a simulated street: scans -> maps of several budgets and both methods ->
+# how far the coarsest scale of each is from the truth. Writes demo/street.gmap and demo/curve.svg. Usage: apps/demo.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -15,16 +15,34 @@ gaussmap=build/demo/apps/gaussmap
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 echo
-"$gaussmap" simulate -o "$folder" | sed "s|$folder|scene|"
-for budget in 1 3; do
-  "$gaussmap" pcd2map "$folder/scans" -o "$folder/budget$budget.gmap" --budget "$budget" | sed "s|$folder/||"
-done
+"$gaussmap" simulate street -o "$folder" | sed "s|$folder: ||"
+"$gaussmap" pcd2map "$folder/scans" -o "$folder/one.gmap" --budget 1 | sed "s|$folder/||"
 
 echo
-echo "How far samples of the map lie from the truth, and the truth from them [m]; scale 0 = 0.1 m cells, 2 = 10 m:"
+echo "The 10 m cells: how far samples of the map lie from the truth [m]"
 echo
-for budget in 1 3; do
-  [ "$budget" = 1 ] && echo "one Gaussian per cell" || echo "refined to $budget times as many at the coarse scales"
-  "$gaussmap" hausdorff "$folder/budget$budget.gmap" "$folder/truth.pcd" --frame map
-  echo
+printf '%-34s %9s %10s %8s %8s %8s\n' "" Gaussians "file size" "99 %" "95 %" mean
+row() {  # title, map
+  local distances info
+  distances=$("$gaussmap" hausdorff "$2" "$folder/truth.pcd" --frame map --scale 2 | awk '$2 == "all" && /map->ref/ { print $5, $6, $7 }')
+  info=$("$gaussmap" info "$2" | awk '$1 == 2 { print $4 }')
+  # shellcheck disable=SC2086
+  printf '%-34s %9s %10s %8s %8s %8s\n' "$1" "$info" "$(stat -c %s "$2" | awk '{ printf "%.1f MB", $1 / 1e6 }')" $distances
+}
+row "one per cell" "$folder/one.gmap"
+for method in insert agglomerate; do
+  for budget in 2 3.4 4; do
+    "$gaussmap" refine "$folder/one.gmap" -o "$folder/$method$budget.gmap" --method $method --budget $budget >/dev/null
+    case $method in
+      insert) title="$budget x, the paper's insertion" ;;
+      *) title="$budget x, agglomeration" ;;
+    esac
+    row "$title" "$folder/$method$budget.gmap"
+  done
 done
+
+mkdir -p demo
+cp "$folder/agglomerate4.gmap" demo/street.gmap
+"$gaussmap" info demo/street.gmap --plot demo/curve.svg --force >/dev/null
+echo
+echo "written: demo/street.gmap, demo/curve.svg"
