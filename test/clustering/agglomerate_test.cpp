@@ -211,7 +211,7 @@ TEST(Agglomerate, GivesTheSamePartsForAnyOrderOfTheData) {
       }
       const Dendrogram other = agglomerate(shuffled, shuffled_areas, with(cost));
       for (std::size_t t = 0; t < 149; ++t) EXPECT_EQ(other.merges[t].cost, dendrogram.merges[t].cost);  // every bit
-      for (const std::size_t k : {2, 7, 50}) {
+      for (const std::size_t k : {2u, 7u, 50u}) {
         const std::vector<int> expected = labels(dendrogram, k), found = labels(other, k);
         std::set<std::pair<int, int>> pairs;
         for (std::size_t i = 0; i < 150; ++i) pairs.insert({expected[order[i]], found[i]});
@@ -326,7 +326,7 @@ TEST(Agglomerate, IsExactWhenEveryoneIsANeighbour) {
     const Dendrogram exact = agglomerate(data, areas, options);
     options.most_exact = 0;
     options.neighbours = 120;
-    for (const std::size_t until : {1, 30, 200}) {
+    for (const std::size_t until : {1u, 30u, 200u}) {
       options.restricted_until = until;
       expectSameTree(agglomerate(data, areas, options), exact, 0.0);
     }
@@ -356,7 +356,7 @@ TEST(Agglomerate, LosesLittleWithFewNeighbours) {
     for (const auto& part : parts) volume += std::exp(0.5 * logDeterminant<3>(merge(part).cov));
     return volume;
   };
-  for (const std::size_t k : {3, 10, 30, 100}) EXPECT_NEAR(volumeAt(k, 1000) / volumeAt(k, 100000), 1.0, 0.05) << k;
+  for (const std::size_t k : {3u, 10u, 30u, 100u}) EXPECT_NEAR(volumeAt(k, 1000) / volumeAt(k, 100000), 1.0, 0.05) << k;
 }
 
 }  // namespace

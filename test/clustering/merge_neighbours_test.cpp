@@ -76,8 +76,8 @@ void expectSame(const Dendrogram& a, const Dendrogram& b) {
 template <int D>
 void expectBruteForce(MergeCost cost) {
   Random random(1);
-  for (const std::size_t neighbours : {1, 2, 5}) {
-    for (const std::size_t until : {1, 10, 40}) {
+  for (const std::size_t neighbours : {1u, 2u, 5u}) {
+    for (const std::size_t until : {1u, 10u, 40u}) {
       const std::vector<Gaussian<D>> data = randomGaussians<D>(random, 60);
       const std::vector<double> areas(60, 2.0);
       const Dendrogram expected = bruteForce(MergeHistory<D>(data, areas, cost), neighbours, until);
