@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
-
 #include "evaluation/point_clouds.h"
 #include "gaussmap/evaluation/hausdorff.h"
 #include "gaussmap/evaluation/nearest_distances.h"
@@ -16,13 +14,6 @@ namespace {
 using test::allPairs;
 using test::cube;
 using test::Points;
-
-template <typename Function>
-double secondsOf(const Function& function) {
-  const auto start = std::chrono::steady_clock::now();
-  function();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 double largest(const std::vector<double>& values) {
   return *std::max_element(values.begin(), values.end());
@@ -138,31 +129,28 @@ TEST(NearestSearch, FindsTheMaximumAtTheCornerOfABox) {  // where the bound of a
   }
 }
 
-// A quadratic search would take minutes; the limits leave room for sanitizers and busy machines.
-TEST(NearestSearch, IsQuickOnHeapsOfEqualPoints) {
+// No clock here: clouds on which a quadratic search would take minutes, where ctest stops a test that never ends.
+TEST(NearestSearch, EndsOnHeapsOfEqualPoints) {
   const Points heap(300000, Vector<3>(1, 2, 3)), other(300000, Vector<3>(1, 2, 4));
-  EXPECT_LT(secondsOf([&] {
-              EXPECT_EQ(largest(nearestDistances(heap, other)), 1.0);
-              EXPECT_EQ(hausdorffMaxima(heap, other).backward, 1.0);
-              EXPECT_EQ(hausdorffMaxima(heap, heap).backward, 0.0);
-            }),
-            20.0);
+  EXPECT_EQ(largest(nearestDistances(heap, other)), 1.0);
+  EXPECT_EQ(hausdorffMaxima(heap, other).backward, 1.0);
+  EXPECT_EQ(hausdorffMaxima(heap, heap).backward, 0.0);
 }
 
-TEST(NearestSearch, IsQuickOnAHeapOfAMicrometreBesideAnOutlier) {
+TEST(NearestSearch, EndsOnAHeapOfAMicrometreBesideAnOutlier) {
   Points heap = cube(200000, 21);
   for (Vector<3>& point : heap) point *= 1e-6;
   heap.emplace_back(1e6, 0, 0);
   Points other = heap;
   for (Vector<3>& point : other) point.y() += 1e-9;
-  EXPECT_LT(secondsOf([&] { EXPECT_LT(largest(nearestDistances(heap, other)), 2e-9); }), 20.0);
+  EXPECT_LT(largest(nearestDistances(heap, other)), 2e-9);
 }
 
-TEST(NearestSearch, IsQuickForPointsThatSeeAWallFromFarAway) {  // each group of them sees half the wall as near
+TEST(NearestSearch, EndsForPointsThatSeeAWallFromFarAway) {  // each group of them sees half the wall as near
   Points wall = cube(200000, 22), far = cube(20000, 23);
   for (Vector<3>& point : wall) point = Vector<3>(0, 20 * point.y(), 20 * point.z());
   for (Vector<3>& point : far) point = Vector<3>(100 + 50 * point.x(), 20 * point.y(), 20 * point.z());
-  EXPECT_LT(secondsOf([&] { EXPECT_NEAR(largest(nearestDistances(far, wall)), 150, 0.1); }), 4.0);
+  EXPECT_NEAR(largest(nearestDistances(far, wall)), 150, 0.1);
 }
 
 TEST(HausdorffMaxima, RefuseEmptySetsAndNameThePointThatIsNotFinite) {
