@@ -8,6 +8,12 @@
 namespace gaussmap::app {
 namespace {
 
+const std::map<std::string, RefineMethod> kMethods = {{"agglomerate", RefineMethod::Agglomerate},
+                                                      {"insert", RefineMethod::Insert}};
+const std::map<std::string, MergeCost> kCosts = {
+    {"volume", MergeCost::Volume}, {"runnalls", MergeCost::Runnalls}, {"volume-area", MergeCost::VolumeArea}};
+const std::map<std::string, CellChoice> kCellChoices = {{"error", CellChoice::Error}, {"volume", CellChoice::Volume}};
+
 /// A whole number > 0 with an optional suffix k, M or G (powers of 1000).
 std::uintmax_t amountOf(const std::string& option, std::string_view text, bool suffix) {
   std::uintmax_t value = 0;
@@ -83,8 +89,18 @@ void addBudgetOptions(CLI::App& command, BudgetInput& input) {
   command
       .add_option("--method", input.method,
                   "agglomerate: from all finer Gaussians down; insert: the paper's, one cluster after the other")
-      ->check(CLI::IsMember({"agglomerate", "insert"}))
+      ->check(CLI::IsMember(kMethods))
       ->capture_default_str();
+  command
+      .add_option("--cost", input.cost,
+                  "what --method agglomerate merges by: growth of the ellipsoids' volume (default); runnalls: loss of "
+                  "likelihood; volume-area: large surfaces resist longer")
+      ->check(CLI::IsMember(kCosts));
+  command
+      .add_option("--cells", input.cells,
+                  "which cells --method insert gives the next cluster to: of largest error (default, the paper's), or "
+                  "of largest volume of ellipsoids")
+      ->check(CLI::IsMember(kCellChoices));
   addSeed(command, input.refine.seed, "of the random swaps of --method insert");
   addThreads(command, input.refine.threads);
 }
@@ -93,12 +109,16 @@ void checkBudget(const BudgetInput& input) {
   if (!input.max_bytes.empty()) amountOf("--max-bytes", input.max_bytes, true);
   if (input.method == "insert" && (!input.max_bytes.empty() || input.max_error > 0.0))
     throw UsageError("--method insert: knows --budget and --max-gaussians only");
+  if (input.method == "insert" && input.cost) throw UsageError("--cost: for --method agglomerate only");
+  if (input.method != "insert" && input.cells) throw UsageError("--cells: for --method insert only");
 }
 
 GaussianMap<3> refineWithin(GaussianMap<3> map, const BudgetInput& input, MapMetadata& metadata, Json step) {
   RefineOptions options = input.refine;
   options.budget = input.budget;
-  options.method = input.method == "insert" ? RefineMethod::Insert : RefineMethod::Agglomerate;
+  options.method = kMethods.at(input.method);
+  if (input.cost) options.merge_cost = kCosts.at(*input.cost);
+  if (input.cells) options.cell_choice = kCellChoices.at(*input.cells);
   options.max_gaussians = maxGaussians(input.max_gaussians, map.scales());
   for (const auto& [scale, most] : options.max_gaussians)
     if (most < map.cellCount(scale))
@@ -106,6 +126,8 @@ GaussianMap<3> refineWithin(GaussianMap<3> map, const BudgetInput& input, MapMet
                        std::to_string(map.cellCount(scale)) +
                        " occupied cells, which hold at least one each; take more, or coarser cells");
   step["method"] = input.method;
+  if (input.cost) step["cost"] = *input.cost;
+  if (input.cells) step["cells"] = *input.cells;
   const auto keepCurves = [](MapMetadata& into, const std::vector<ErrorCurve>& curves) {
     into["error_curves"] = jsonOf(curves).dump();
   };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,9 @@ struct BudgetInput {
   std::string max_bytes;                   // with suffix k, M, G
   double max_error = 0.0;                  // [m], 0: not given
   std::string method = "agglomerate";
-  RefineOptions refine;  // seed and threads
+  std::optional<std::string> cost;   // of merges, --method agglomerate only
+  std::optional<std::string> cells;  // which cells are served first, --method insert only
+  RefineOptions refine;              // seed and threads
 };
 void addBudgetOptions(CLI::App& command, BudgetInput& input);
 

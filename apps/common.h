@@ -26,10 +26,12 @@ struct UsageError : std::runtime_error {
 // One function per command, called once by main.
 void addPcd2map(CLI::App& app);
 void addRefine(CLI::App& app);
+void addCompress(CLI::App& app);
 void addInfo(CLI::App& app);
 void addExport(CLI::App& app);
 void addHausdorff(CLI::App& app);
 void addSimulate(CLI::App& app);
+void addDraw(CLI::App& app);
 
 /// Which clouds, and how they lie in the map: the same words for every command that reads scans.
 struct ScanInput {

@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs, builds, and runs the main job on a simulated street: scans -> maps of several budgets and both methods ->
-# how far the coarsest scale of each is from the truth. Writes demo/street.gmap and demo/curve.svg. Usage: apps/demo.sh
+# how far the coarsest scale of each is from the truth. Writes demo/street.gmap, demo/curve.svg (the error against the
+# number of Gaussians) and, from above with one and with four Gaussians per cell, demo/map.svg (the street) and
+# demo/crossing.svg (60 m of it). Usage: apps/demo.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -44,5 +46,7 @@ done
 mkdir -p demo
 cp "$folder/agglomerate4.gmap" demo/street.gmap
 "$gaussmap" info demo/street.gmap --plot demo/curve.svg --force >/dev/null
+"$gaussmap" draw "$folder/one.gmap" demo/street.gmap -o demo/map.svg --force >/dev/null
+"$gaussmap" draw "$folder/one.gmap" demo/street.gmap -o demo/crossing.svg --box -30 -32 30 18 --force >/dev/null
 echo
-echo "written: demo/street.gmap, demo/curve.svg"
+echo "written: demo/street.gmap, demo/curve.svg, demo/map.svg, demo/crossing.svg"

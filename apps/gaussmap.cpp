@@ -39,10 +39,12 @@ int main(int argc, char** argv) {
   app.footer("Example: gaussmap pcd2map scans/ -o street.gmap && gaussmap info street.gmap");
   addPcd2map(app);
   addRefine(app);
+  addCompress(app);
   addInfo(app);
   addExport(app);
   addHausdorff(app);
   addSimulate(app);
+  addDraw(app);
   try {
     app.parse(argc, argv);
     std::cout.flush();

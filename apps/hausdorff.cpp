@@ -12,6 +12,7 @@
 #include "gaussmap/evaluation/held_out.h"
 #include "gaussmap/io/map_pcd.h"
 #include "gaussmap/io/ply.h"
+#include "gaussmap/map/leaves.h"
 
 namespace gaussmap::app {
 namespace {
@@ -20,7 +21,9 @@ struct HausdorffCommand {
   std::string subject;
   ScanInput reference;
   int scale = -1;
+  bool leaves = false;
   std::string sampling = "volume";
+  std::string samples_in = "members";
   SampleOptions samples;
   bool max_only = false;
   bool held_out = false;
@@ -88,15 +91,37 @@ std::vector<Vector<3>> readSubject(const HausdorffCommand& options) {
   return readPoints(cloud, options.samples.threads);
 }
 
-/// The scales to look at, of those that there are.
-std::vector<int> chosenScales(int chosen, int scales) {
-  if (chosen >= scales)
-    throw UsageError("--scale " + std::to_string(chosen) + ": the map has the scales 0 to " +
+/// A scale; none: the map at its finest, all its leaves.
+using Level = std::optional<int>;
+
+std::string wordOf(const Level& level) {
+  return level ? std::to_string(*level) : "leaves";
+}
+
+Json jsonOf(const Level& level) {
+  return level ? Json(*level) : Json("leaves");
+}
+
+/// What to look at of some maps: what the user chose, else every scale that all of them have, and if one is
+/// compressed, first the leaves.
+std::vector<Level> chosenLevels(const HausdorffCommand& options, const std::vector<const GaussianMap<3>*>& maps) {
+  if (options.leaves) return {std::nullopt};
+  int scales = maps.front()->scales();
+  bool compressed = false;
+  for (const GaussianMap<3>* map : maps) {
+    scales = std::min(scales, map->scales());
+    compressed |= map->isCompressed();
+  }
+  if (options.scale >= scales)
+    throw UsageError("--scale " + std::to_string(options.scale) + ": the map has the scales 0 to " +
                      std::to_string(scales - 1));
-  if (chosen >= 0) return {chosen};
-  std::vector<int> all;
-  for (int s = 0; s < scales; ++s) all.push_back(s);
-  return all;
+  if (options.scale >= 0) return {options.scale};
+  std::vector<Level> levels;
+  if (compressed) levels.push_back(std::nullopt);
+  for (int s = 0; s < scales; ++s)
+    if (!compressed || std::all_of(maps.begin(), maps.end(), [&](auto* map) { return map->cellCount(s) > 0; }))
+      levels.emplace_back(s);
+  return levels;
 }
 
 Json writeErrors(const HausdorffCommand& options, const std::vector<Vector<3>>& reference,
@@ -122,26 +147,29 @@ void compareMap(const HausdorffCommand& options, Kind kind) {
   else
     reference = Reference(readPoints(options.reference, options.samples.threads));
   const GaussianMap<3> map = loadAnyMap(options.subject);
-  const std::vector<int> scales =
-      chosenScales(options.scale, other ? std::min(map.scales(), other->scales()) : map.scales());
-  if (!options.errors.path.empty() && scales.size() > 1)
-    throw UsageError("--write-errors writes one cloud: choose a --scale");
+  std::vector<const GaussianMap<3>*> maps = {&map};
+  if (other) maps.push_back(&*other);
+  const std::vector<Level> levels = chosenLevels(options, maps);
+  if (!options.errors.path.empty() && levels.size() > 1)
+    throw UsageError("--write-errors writes one cloud: choose a --scale, or --leaves");
 
   Json all = Json::array(), written;
   if (!options.json) printHead();
-  for (const int s : scales) {
-    if (other) reference = Reference(sampleMap(*other, s, options.samples));
+  for (const Level& level : levels) {
+    const SampleOptions& samples = options.samples;
+    if (other) reference = Reference(level ? sampleMap(*other, *level, samples) : sampleLeaves(*other, samples));
     PointDistances distances;
-    const MapHausdorff result = reference->compare(map, s, options.samples, &distances);
-    all.push_back({{"scale", s},
+    const MapHausdorff result = level ? reference->compare(map, *level, samples, &distances)
+                                      : reference->compareLeaves(map, samples, &distances);
+    all.push_back({{"scale", jsonOf(level)},
                    {"gaussians", result.gaussians},
                    {"samples", result.samples},
                    {"unplaced", result.unplaced},
                    {"all", jsonOf(result.all)},
                    {"within_two_sigma", jsonOf(result.within_two_sigma)}});
     if (!options.json) {
-      printRows(std::to_string(s), "all", "map", "ref", result.all);
-      printRows(std::to_string(s), "2 sigma", "map", "ref", result.within_two_sigma);
+      printRows(wordOf(level), "all", "map", "ref", result.all);
+      printRows(wordOf(level), "2 sigma", "map", "ref", result.within_two_sigma);
     }
     if (!options.errors.path.empty()) written = writeErrors(options, reference->points(), distances);
   }
@@ -195,13 +223,15 @@ void scoreMap(const HausdorffCommand& options) {
   if (!options.json)
     std::printf("%-6s %10s %10s %10s %10s %10s %10s %10s\n", "scale", "gaussians", "mean", "median", "floor", "no cell",
                 "nowhere", "points");
-  for (const int s : chosenScales(options.scale, map.scales())) {
-    const HeldOutResult result = heldOutLogLikelihood<3>(map, s, points, scoring);
+  for (const Level& level : chosenLevels(options, {&map})) {
+    const HeldOutResult result =
+        level ? heldOutLogLikelihood<3>(map, *level, points, scoring) : heldOutLogLikelihood<3>(map, points, scoring);
+    const std::size_t gaussians = level ? map.gaussianCount(*level) : leaves<3>(map).size();
     const double share = 1.0 / static_cast<double>(result.count);
     const double in_no_cell = share * static_cast<double>(result.in_no_cell);
     const double nowhere = share * static_cast<double>(result.nowhere);
-    all.push_back({{"scale", s},
-                   {"gaussians", map.gaussianCount(s)},
+    all.push_back({{"scale", jsonOf(level)},
+                   {"gaussians", gaussians},
                    {"mean", result.mean},
                    {"median", result.median},
                    {"floor", result.floor},
@@ -210,8 +240,8 @@ void scoreMap(const HausdorffCommand& options) {
                    {"nowhere", nowhere},
                    {"points", result.count}});
     if (!options.json)
-      std::printf("%-6d %10zu %10.4f %10.4f %10.4f %9.3f%% %9.3f%% %10zu\n", s, map.gaussianCount(s), result.mean,
-                  result.median, result.floor, 100.0 * in_no_cell, 100.0 * nowhere, result.count);
+      std::printf("%-6s %10zu %10.4f %10.4f %10.4f %9.3f%% %9.3f%% %10zu\n", wordOf(level).c_str(), gaussians,
+                  result.mean, result.median, result.floor, 100.0 * in_no_cell, 100.0 * nowhere, result.count);
   }
   if (options.json) printJson({{"map", options.subject}, {"background", scoring.background}, {"scales", all}});
 }
@@ -243,6 +273,7 @@ void check(const HausdorffCommand& options, bool of_map, Kind reference) {
 
 void run(HausdorffCommand options) {
   options.samples.share = options.sampling == "mass" ? SampleShare::Mass : SampleShare::Volume;
+  options.samples.bounds = options.samples_in == "cell" ? SampleBounds::Cell : SampleBounds::MemberCells;
   const bool of_map = isMap(options.subject);
   const Kind reference = options.reference.paths.size() == 1 ? kindOf(options.onlyReference()) : Kind::Cloud;
   check(options, of_map, reference);
@@ -258,9 +289,10 @@ void addHausdorff(CLI::App& app) {
   auto options = std::make_shared<HausdorffCommand>();
   CLI::App* command = app.add_subcommand("hausdorff", "Distances between a map (or cloud) and a reference, both ways");
   command->footer(
-      "A map is sampled: samples outside the cell of their Gaussian are rejected. The maximum over samples of a\n"
-      "Gaussian grows with their number, since it has no end but its cell's: compare maxima at equal --samples only,\n"
-      "or take the quantiles, or the rows '2 sigma', whose samples fill the ellipsoids of 2 standard deviations.\n"
+      "A map is sampled: samples outside the bounds of their Gaussian (--samples-in) are rejected. The maximum over\n"
+      "samples of a Gaussian grows with their number, since it has no other end: compare maxima at equal --samples\n"
+      "only, or take the quantiles, or the rows '2 sigma', whose samples fill the ellipsoids of 2 standard "
+      "deviations.\n"
       "Clouds as reference are taken together as pcd2map takes them. Against a mesh, map->ref are exact distances to\n"
       "its surface, ref->map those of --samples points spread over its area. Of a map as reference the scale of the\n"
       "same number is sampled in the same way: equal maps have distance 0.\n"
@@ -279,7 +311,16 @@ void addHausdorff(CLI::App& app) {
       ->add_option("reference", options->reference.paths,
                    "PCD files or directories of them, or one mesh (PLY), or one map")
       ->required();
-  command->add_option("--scale", options->scale, "only this scale, 0 = finest; default: all")->check(CLI::Range(0, 63));
+  CLI::Option* scale = command
+                           ->add_option("--scale", options->scale,
+                                        "only this scale, 0 = finest; default: all, and the leaves of a compressed map")
+                           ->check(CLI::Range(0, 63));
+  command
+      ->add_flag(
+          "--leaves", options->leaves,
+          "the map at its finest, as a whole: of a compressed map the finest cells and the coarse ones that stand "
+          "alone")
+      ->excludes(scale);
   command->add_option("--samples", options->samples.samples, "samples of a scale, shared out among its Gaussians")
       ->check(CLI::Range(1, 100000000))
       ->capture_default_str();
@@ -288,6 +329,12 @@ void addHausdorff(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--sampling", options->sampling, "samples in proportion to ellipsoid volume, or to weight")
       ->check(CLI::IsMember({"volume", "mass"}))
+      ->capture_default_str();
+  command
+      ->add_option("--samples-in", options->samples_in,
+                   "where samples of a Gaussian may lie: in the box of the finest cells that it stands for, or (as in "
+                   "the paper) anywhere in its cell")
+      ->check(CLI::IsMember({"members", "cell"}))
       ->capture_default_str();
   addSeed(*command, options->samples.seed, "of the samples");
   command->add_flag("--max-only", options->max_only, "of two clouds only the maxima, which are found faster");

@@ -6,6 +6,7 @@
 #include "common.h"
 #include "gaussmap/io/map_pcd.h"
 #include "gaussmap/map/extent.h"
+#include "gaussmap/map/leaves.h"
 #include "plot.h"
 
 namespace gaussmap::app {
@@ -29,6 +30,24 @@ std::string sentenceOf(const Json& step) {
   for (const auto& [name, value] : step.items())
     sentence += (sentence.empty() ? "" : ", ") + name + " " + sentenceOf(value);
   return sentence;
+}
+
+/// Whether more scans can be added, and why not.
+std::string stateOf(const GaussianMap<3>& map) {
+  if (map.isCompressed()) return "compressed: detail only where it is needed (takes no more scans)";
+  return map.canGrow() ? "exact moments at the finest scale (takes more scans)" : "Gaussians only (final)";
+}
+
+/// Adds to each scale what of it is the finest that the map has there.
+void addLeaves(const GaussianMap<3>& map, Json& scales) {
+  const double all = map.weight(map.scales() - 1);
+  for (int s = 0; s < map.scales(); ++s) {
+    const LeafCounts counts = leafCounts<3>(map, s);
+    Json& scale = scales[static_cast<std::size_t>(s)];
+    scale["leaf_cells"] = counts.cells;
+    scale["leaf_gaussians"] = counts.gaussians;
+    scale["leaf_share"] = all > 0.0 ? counts.weight / all : 0.0;
+  }
 }
 
 /// The error curves that the map was refined by; nothing if there are none.
@@ -66,16 +85,20 @@ void printInfo(const InfoOptions& options) {
     const std::uintmax_t bytes = index < size.scale_tiles.size() ? size.scale_tiles[index] : 0;
     const double area = static_cast<double>(map.cellCount(s)) * map.grid().side(s) * map.grid().side(s);
     scales[index]["bytes"] = bytes;
-    scales[index]["bytes_per_gaussian"] = map.empty() ? 0.0 : double(bytes) / double(map.gaussianCount(s));
-    scales[index]["bytes_per_square_metre"] = map.empty() ? 0.0 : double(bytes) / area;
+    const bool none = map.cellCount(s) == 0;
+    scales[index]["bytes_per_gaussian"] = none ? 0.0 : double(bytes) / double(map.gaussianCount(s));
+    scales[index]["bytes_per_square_metre"] = none ? 0.0 : double(bytes) / area;
   }
+  addLeaves(map, scales);
   const auto extent = extentOf<3>(map);
   if (options.json) {
     Json info = {{"map", options.map},
                  {"resolution", map.options().resolution},
                  {"ratio", map.options().ratio},
                  {"noise", map.options().noise},
-                 {"finest", map.canGrow() ? "moments" : "gaussians"},
+                 {"finest", map.canGrow() || !map.scale(0).moments.empty() ? "moments" : "gaussians"},
+                 {"takes_scans", map.canGrow()},
+                 {"compressed", map.isCompressed()},
                  {"scales", scales},
                  {"bytes", size.file}};
     if (extent) info["extent"] = {{"low", vectorOf(extent->low)}, {"high", vectorOf(extent->high)}};
@@ -87,8 +110,7 @@ void printInfo(const InfoOptions& options) {
     printJson(info);
     return;
   }
-  std::printf("%s: %s, %s\n", options.map.c_str(), humanBytes(size.file).c_str(),
-              map.canGrow() ? "exact moments at the finest scale (takes more scans)" : "Gaussians only (final)");
+  std::printf("%s: %s, %s\n", options.map.c_str(), humanBytes(size.file).c_str(), stateOf(map).c_str());
   std::printf("ratio %d, noise floor %g m", map.options().ratio, map.options().noise);
   if (extent)
     std::printf(", extent [%.2f %.2f %.2f] .. [%.2f %.2f %.2f] m", extent->low.x(), extent->low.y(), extent->low.z(),
@@ -104,6 +126,11 @@ void printInfo(const InfoOptions& options) {
                   scale["bytes_per_square_metre"].get<double>());
     std::printf("\n");
   }
+  if (map.isCompressed())
+    for (const Json& scale : scales)
+      std::printf("finest at scale %d: %zu cells, %zu Gaussians, %.3g %% of the points\n", scale["scale"].get<int>(),
+                  scale["leaf_cells"].get<std::size_t>(), scale["leaf_gaussians"].get<std::size_t>(),
+                  100.0 * scale["leaf_share"].get<double>());
   printCurves(curves);
   const auto history = metadata.find("history");
   if (history == metadata.end()) return;

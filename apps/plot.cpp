@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
-#include "gaussmap/io/atomic_file.h"
+#include "svg.h"
 
 namespace gaussmap::app {
 namespace {
@@ -29,18 +28,20 @@ struct Axis {
   double at(double value) const { return from + (std::log10(value) - low) / (high - low) * (to - from); }
 };
 
-void drawAxes(std::ostream& svg, const Axis& x, const Axis& y) {
-  for (double decade = x.low; decade <= x.high; ++decade)
-    svg << "<path d='M" << x.at(std::pow(10, decade)) << ' ' << y.from << "V" << y.to << "' stroke='#ddd'/><text x='"
-        << x.at(std::pow(10, decade)) << "' y='" << y.from + 18 << "' text-anchor='middle'>" << std::pow(10, decade)
-        << "</text>\n";
-  for (double decade = y.low; decade <= y.high; ++decade)
-    svg << "<path d='M" << x.from << ' ' << y.at(std::pow(10, decade)) << "H" << x.to << "' stroke='#ddd'/><text x='"
-        << x.from - 8 << "' y='" << y.at(std::pow(10, decade)) + 4 << "' text-anchor='end'>" << std::pow(10, decade)
-        << "</text>\n";
-  svg << "<text x='" << (x.from + x.to) / 2 << "' y='" << kHeight - 10
-      << "' text-anchor='middle'>Gaussians of the scale</text>\n<text transform='translate(16 " << (y.from + y.to) / 2
-      << ") rotate(-90)' text-anchor='middle'>distance of samples to the finest scale [m]</text>\n";
+void drawAxes(Svg& svg, const Axis& x, const Axis& y) {
+  for (double decade = x.low; decade <= x.high; ++decade) {
+    const double value = std::pow(10, decade);
+    svg << "<path d='M" << x.at(value) << ' ' << y.from << "V" << y.to << "' stroke='#ddd'/>\n";
+    svg.text(x.at(value), y.from + 18, numberText(value), "text-anchor='middle'");
+  }
+  for (double decade = y.low; decade <= y.high; ++decade) {
+    const double value = std::pow(10, decade);
+    svg << "<path d='M" << x.from << ' ' << y.at(value) << "H" << x.to << "' stroke='#ddd'/>\n";
+    svg.text(x.from - 8, y.at(value) + 4, numberText(value), "text-anchor='end'");
+  }
+  svg.text((x.from + x.to) / 2, kHeight - 10, "Gaussians of the scale", "text-anchor='middle'");
+  svg.text(-(y.from + y.to) / 2, 16, "distance of samples to the finest scale [m]",
+           "transform='rotate(-90)' text-anchor='middle'");
 }
 
 }  // namespace
@@ -58,9 +59,7 @@ void plotCurves(const Json& curves, const std::filesystem::path& path) {
   x.to = kWidth - kRight;
   y.from = kHeight - kBottom;
   y.to = kTop;
-  std::ostringstream svg;
-  svg << "<svg xmlns='http://www.w3.org/2000/svg' width='" << kWidth << "' height='" << kHeight
-      << "' font-family='sans-serif' font-size='12'>\n<rect width='100%' height='100%' fill='white'/>\n";
+  Svg svg(kWidth, kHeight);
   drawAxes(svg, x, y);
   double legend = kTop + 10;
   std::size_t number = 0;
@@ -73,16 +72,14 @@ void plotCurves(const Json& curves, const std::filesystem::path& path) {
       for (const Json& point : curve.at("points"))
         svg << x.at(point.at("gaussians").get<double>()) << ',' << y.at(std::max(point.at(key).get<double>(), 1e-9))
             << ' ';
-      svg << "'/>\n<text fill='" << colour << "' x='" << x.to + 12 << "' y='" << legend << "'>scale "
-          << curve.at("scale").get<int>() << (dashed ? ", mean (dashed)" : ", 95 %") << "</text>\n";
+      svg << "'/>\n";
+      svg.text(x.to + 12, legend,
+               "scale " + std::to_string(curve.at("scale").get<int>()) + (dashed ? ", mean (dashed)" : ", 95 %"),
+               std::string("fill='") + colour + "'");
       legend += 18;
     }
   }
-  svg << "</svg>\n";
-  const std::string text = svg.str();
-  AtomicFile file(path);
-  file.write(text.data(), text.size());
-  file.commit();
+  svg.save(path);
 }
 
 }  // namespace gaussmap::app

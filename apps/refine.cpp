@@ -22,6 +22,9 @@ void run(const RefineCommand& options) {
   const double start = now();
   MapMetadata metadata;
   GaussianMap<3> map = loadAnyMap(options.map, &metadata);
+  if (map.isCompressed())
+    throw std::runtime_error(options.map +
+                             ": is compressed, its finest scale is incomplete: refine the map that it was made from");
   map = refineWithin(std::move(map), options.budget, metadata, {{"command", "refine"}, {"version", GAUSSMAP_VERSION}});
   saveMap<3>(map, options.output.path, metadata,
              {options.output.force, SaveOptions().compression, options.budget.refine.threads});

@@ -9,6 +9,7 @@
 #include "common.h"
 #include "gaussmap/io/pcd_writer.h"
 #include "gaussmap/io/ply.h"
+#include "gaussmap/io/scan_list.h"
 
 namespace gaussmap::app {
 namespace {
@@ -60,7 +61,7 @@ std::vector<std::filesystem::path> scanPaths(const std::filesystem::path& folder
 /// Scans that an earlier run left would be taken for scans of this one.
 void refuseOtherScans(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& own) {
   for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (entry.path().extension() == ".pcd" && std::find(own.begin(), own.end(), entry.path()) == own.end())
+    if (isScanName(entry.path().filename()) && std::find(own.begin(), own.end(), entry.path()) == own.end())
       throw UsageError(entry.path().string() + " would lie among the new scans: remove it, or take another directory");
 }
 

@@ -17,7 +17,8 @@ KLClustering<D> insertCluster(const std::vector<Gaussian<D>>& data, const std::v
   // The current references with the data that are nearest to them: what line 9 looks for the worst datum in.
   KLPartition<D> current;
   current.references = std::move(references);
-  problem.assign(current.references, current.labels);
+  problem.assign(current.references, current.assignment);
+  current.labels = current.assignment.labels;
   Random random(options.seed);
   KLPartition<D> partition = insertSeed(problem, current, options);
   const int swaps = swapLoop(problem, options, random, partition);

@@ -15,27 +15,31 @@ namespace {
 // Rows of the product at a time: their features stay in the first-level cache, whatever n and k are.
 constexpr Eigen::Index kBlock = 256;
 
-/// The smallest entry of each row of X Y and its column, without storing the product. X: rows x F from `x`, a column
-/// every `stride`; Y: F x k. Plain loops that the compiler vectorises: the matrices of most cells are too small for
-/// a general product to pay (labels are doubles for the same reason).
-template <int D>
-void nearestOfBlock(const double* x, Eigen::Index stride, Eigen::Index rows, const typename KLProblem<D>::References& y,
-                    int* labels) {
-  double best[kBlock], nearest[kBlock];
-  std::fill(best, best + rows, std::numeric_limits<double>::infinity());
-  std::fill(nearest, nearest + rows, 0.0);
-  for (Eigen::Index c = 0; c < y.cols(); ++c) {
-    const Eigen::Matrix<double, KLProblem<D>::kFeatures, 1> weights = y.col(c);
-    const auto label = static_cast<double>(c);
-    for (Eigen::Index j = 0; j < rows; ++j) {
-      double distance = weights(0);  // feature 0 is 1
-      for (int f = 1; f < KLProblem<D>::kFeatures; ++f) distance += weights(f) * x[f * stride + j];
-      const bool nearer = distance < best[j];  // ties stay with the smaller label
-      best[j] = nearer ? distance : best[j];
-      nearest[j] = nearer ? label : nearest[j];
-    }
+/// The nearest references that a block of data has met so far. Labels are doubles: the loops below are vectorised.
+struct Nearest {
+  double distance[kBlock], label[kBlock];
+
+  void clear(Eigen::Index rows) {
+    std::fill(distance, distance + rows, std::numeric_limits<double>::infinity());
+    std::fill(label, label + rows, 0.0);
   }
-  for (Eigen::Index j = 0; j < rows; ++j) labels[j] = static_cast<int>(nearest[j]);
+};
+
+/// Compares rows of X with column c of Y. X: rows x F from `x`, a column every `stride`. Plain loops: the matrices of
+/// most cells are too small for a general product to pay.
+template <int D>
+void compare(const double* x, Eigen::Index stride, Eigen::Index rows, const typename KLProblem<D>::References& y,
+             Eigen::Index c, Nearest& nearest) {
+  const Eigen::Matrix<double, KLProblem<D>::kFeatures, 1> weights = y.col(c);
+  const auto label = static_cast<double>(c);
+  for (Eigen::Index j = 0; j < rows; ++j) {
+    double distance = weights(0);  // feature 0 is 1
+    for (int f = 1; f < KLProblem<D>::kFeatures; ++f) distance += weights(f) * x[f * stride + j];
+    const bool nearer =
+        (distance < nearest.distance[j]) | ((distance == nearest.distance[j]) & (label < nearest.label[j]));
+    nearest.distance[j] = nearer ? distance : nearest.distance[j];
+    nearest.label[j] = nearer ? label : nearest.label[j];
+  }
 }
 
 /// Writes [1, mu, upper triangle of Sigma + mu mu'] into a row of features.
@@ -122,13 +126,71 @@ KLProblem<D>::KLProblem(const std::vector<Gaussian<D>>& data) : data_(data) {
 }
 
 template <int D>
-void KLProblem<D>::assign(const std::vector<Gaussian<D>>& references, std::vector<int>& labels) const {
-  const References reference_features = referenceFeatures<D>(references);
+void KLProblem<D>::assign(const std::vector<Gaussian<D>>& references, KLAssignment<D>& assignment) const {
+  References features = referenceFeatures<D>(references);
+  const Eigen::Index known = assignment.references.cols();
+  std::vector<char> changed(references.size(), 1);
+  std::size_t changes = references.size();
+  for (Eigen::Index c = 0; c < std::min(known, features.cols()); ++c)
+    if (features.col(c) == assignment.references.col(c)) {
+      changed[static_cast<std::size_t>(c)] = 0;
+      --changes;
+    }
+  const bool all = known > features.cols() || 2 * changes > references.size();
+  assignment.references.swap(features);
+  if (all)
+    assignAll(assignment);
+  else
+    assignAgain(assignment, changed);
+}
+
+template <int D>
+void KLProblem<D>::assignAll(KLAssignment<D>& assignment) const {
   const auto n = static_cast<Eigen::Index>(size());
-  labels.resize(size());
-  for (Eigen::Index first = 0; first < n; first += kBlock)
-    nearestOfBlock<D>(features_.data() + first, n, std::min(kBlock, n - first), reference_features,
-                      labels.data() + first);
+  assignment.distances.resize(size());
+  assignment.labels.resize(size());
+  Nearest nearest;
+  for (Eigen::Index first = 0; first < n; first += kBlock) {
+    const Eigen::Index rows = std::min(kBlock, n - first);
+    nearest.clear(rows);
+    for (Eigen::Index c = 0; c < assignment.references.cols(); ++c)
+      compare<D>(features_.data() + first, n, rows, assignment.references, c, nearest);
+    std::copy(nearest.distance, nearest.distance + rows, assignment.distances.begin() + first);
+    std::transform(nearest.label, nearest.label + rows, assignment.labels.begin() + first,
+                   [](double label) { return static_cast<int>(label); });
+  }
+}
+
+template <int D>
+void KLProblem<D>::assignAgain(KLAssignment<D>& assignment, const std::vector<char>& changed) const {
+  const auto n = static_cast<Eigen::Index>(size()), k = assignment.references.cols();
+  Nearest nearest;
+  double x[kFeatures * kBlock];  // data whose reference has moved
+  for (Eigen::Index first = 0; first < n; first += kBlock) {
+    const Eigen::Index rows = std::min(kBlock, n - first);
+    double* const distances = assignment.distances.data() + first;
+    int* const labels = assignment.labels.data() + first;
+    Eigen::Index moved[kBlock], moves = 0;
+    for (Eigen::Index j = 0; j < rows; ++j)
+      if (changed[static_cast<std::size_t>(labels[j])]) moved[moves++] = j;
+    std::copy(distances, distances + rows, nearest.distance);
+    std::copy(labels, labels + rows, nearest.label);
+    for (Eigen::Index c = 0; c < k; ++c)
+      if (changed[static_cast<std::size_t>(c)])
+        compare<D>(features_.data() + first, n, rows, assignment.references, c, nearest);
+    for (Eigen::Index j = 0; j < rows; ++j) {
+      distances[j] = nearest.distance[j];
+      labels[j] = static_cast<int>(nearest.label[j]);
+    }
+    for (int f = 1; f < kFeatures; ++f)
+      for (Eigen::Index m = 0; m < moves; ++m) x[f * kBlock + m] = features_(first + moved[m], f);
+    nearest.clear(moves);
+    for (Eigen::Index c = 0; c < k; ++c) compare<D>(x, kBlock, moves, assignment.references, c, nearest);
+    for (Eigen::Index m = 0; m < moves; ++m) {
+      distances[moved[m]] = nearest.distance[m];
+      labels[moved[m]] = static_cast<int>(nearest.label[m]);
+    }
+  }
 }
 
 template <int D>
@@ -197,17 +259,18 @@ void KLProblem<D>::update(KLPartition<D>& partition) const {
 }
 
 template <int D>
-KLPartition<D> KLProblem<D>::run(std::vector<Gaussian<D>> references, const KLKMeansOptions& options) const {
+KLPartition<D> KLProblem<D>::run(std::vector<Gaussian<D>> references, const KLKMeansOptions& options,
+                                 KLAssignment<D> earlier) const {
   KLPartition<D> partition;
   partition.references = std::move(references);
+  partition.assignment = std::move(earlier);
   partition.converged = false;
   double distortion_before = std::numeric_limits<double>::infinity();
-  std::vector<int> labels;
   while (!partition.converged && partition.iterations < options.max_iterations) {
-    assign(partition.references, labels);
-    partition.converged = labels == partition.labels;
+    assign(partition.references, partition.assignment);
+    partition.converged = partition.assignment.labels == partition.labels;
     if (partition.converged) break;
-    partition.labels.swap(labels);
+    partition.labels = partition.assignment.labels;
     update(partition);
     ++partition.iterations;
     partition.converged = distortion_before - partition.distortion < options.tolerance * distortion_before;

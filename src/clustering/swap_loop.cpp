@@ -78,7 +78,7 @@ KLPartition<D> insertSeed(const KLProblem<D>& problem, const KLPartition<D>& par
   std::vector<Gaussian<D>> references = partition.references;
   references.push_back(
       seedAt(problem, partition, worstDatum(problem, partition, options.worst_rule), options.seed_rule));
-  return problem.run(std::move(references), options);
+  return problem.run(std::move(references), options, partition.assignment);
 }
 
 template <int D>
@@ -88,7 +88,7 @@ int swapLoop(const KLProblem<D>& problem, const KLKMeansOptions& options, Random
     const Worst worst = worstDatum(problem, partition, options.worst_rule);
     std::vector<Gaussian<D>> references = partition.references;
     references[leastNeeded(partition, worst, random)] = seedAt(problem, partition, worst, options.seed_rule);
-    KLPartition<D> swapped = problem.run(std::move(references), options);
+    KLPartition<D> swapped = problem.run(std::move(references), options, partition.assignment);
     swapped.iterations += partition.iterations;
     const bool accepted = swapped.distortion < partition.distortion * (1.0 - kLeastGain) &&
                           swapped.references.size() >= partition.references.size();

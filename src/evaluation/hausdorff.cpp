@@ -9,6 +9,7 @@
 #include "common/parallel.h"
 #include "evaluation/nearest_search.h"
 #include "gaussmap/evaluation/mesh_distance.h"
+#include "gaussmap/map/leaves.h"
 
 namespace gaussmap {
 namespace {
@@ -125,33 +126,43 @@ HausdorffResult Reference::compare(const std::vector<Vector<3>>& subject, int th
   return result;
 }
 
-MapHausdorff Reference::compare(const GaussianMap<3>& map, int scale, const SampleOptions& options,
-                                PointDistances* distances) const {
-  MapSamples<3> samples = sampleMap(map, scale, options);
-  if (samples.points.empty()) throw std::invalid_argument("no samples: no Gaussian of the scale has mass in its cell");
+MapHausdorff Reference::compareSamples(const MapSamples<3>& samples, int threads, PointDistances* distances) const {
+  if (samples.points.empty())
+    throw std::invalid_argument("no samples: no Gaussian of the scale has mass in its bounds");
 
   MapHausdorff result;
-  result.gaussians = map.gaussianCount(scale);
   result.samples = samples.points.size();
   result.unplaced = samples.unplaced;
   PointDistances all;
-  result.all = compare(samples.points, options.threads, &all);
+  result.all = compare(samples.points, threads, &all);
 
   const std::vector<Vector<3>> near = samples.within(2.0);
   if (!near.empty() && parts_->is_map && parts_->near) {
     const PointTree tree(near);
-    result.within_two_sigma =
-        summariseBoth(parts_->near->forward(near, tree, options.threads),
-                      nearestDistances(parts_->near->tree, tree, options.threads), options.threads);
+    result.within_two_sigma = summariseBoth(parts_->near->forward(near, tree, threads),
+                                            nearestDistances(parts_->near->tree, tree, threads), threads);
   } else if (!near.empty() && !parts_->is_map) {
     std::vector<double> forward;  // the distances of the near samples are among those of all
     forward.reserve(near.size());
     for (std::size_t i = 0; i < all.forward.size(); ++i)
       if (samples.mahalanobis[i] <= 2.0) forward.push_back(all.forward[i]);
-    result.within_two_sigma =
-        summariseBoth(forward, nearestDistances(parts_->tree, PointTree(near), options.threads), options.threads);
+    result.within_two_sigma = summariseBoth(forward, nearestDistances(parts_->tree, PointTree(near), threads), threads);
   }
   if (distances != nullptr) *distances = std::move(all);
+  return result;
+}
+
+MapHausdorff Reference::compare(const GaussianMap<3>& map, int scale, const SampleOptions& options,
+                                PointDistances* distances) const {
+  MapHausdorff result = compareSamples(sampleMap(map, scale, options), options.threads, distances);
+  result.gaussians = map.gaussianCount(scale);
+  return result;
+}
+
+MapHausdorff Reference::compareLeaves(const GaussianMap<3>& map, const SampleOptions& options,
+                                      PointDistances* distances) const {
+  MapHausdorff result = compareSamples(sampleLeaves(map, options), options.threads, distances);
+  result.gaussians = leaves<3>(map).size();
   return result;
 }
 

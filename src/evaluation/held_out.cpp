@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <tuple>
@@ -102,8 +101,10 @@ struct Neighbour {
   bool is_own;  // the cell of the key itself
 };
 
+enum class Cells { All, Leaves };
+
 template <int D>
-std::vector<Neighbour<D>> neighbours(const GaussianMap<D>& map, int scale, const CellKey<D>& key) {
+std::vector<Neighbour<D>> neighbours(const GaussianMap<D>& map, int scale, Cells cells, const CellKey<D>& key) {
   std::vector<Neighbour<D>> found;
   for (int code = 0; code < (D == 3 ? 27 : 9); ++code) {
     CellKey<D> other = key;
@@ -115,7 +116,8 @@ std::vector<Neighbour<D>> neighbours(const GaussianMap<D>& map, int scale, const
       fits &= shifted == other[axis];
     }
     if (!fits) continue;
-    if (const auto cell = map.find(other, scale))
+    const auto cell = map.find(other, scale);
+    if (cell && (cells == Cells::All || map.isLeaf(*cell, scale)))
       found.push_back({map.grid().centre(other, scale), map.gaussiansOf(*cell, scale), other == key});
   }
   return found;
@@ -163,58 +165,66 @@ double logOfBoth(double a, double b) {
   return large + std::log1p(std::exp(small - large));
 }
 
-/// ln p of every point, and how many lie in no cell.
-template <int D>
+/// Of every point ln of the mixture there, and whether it lies in a cell.
 struct Scores {
   std::vector<double> values;
-  std::size_t in_no_cell = 0;
+  std::vector<char> in_cell;
 };
 
+/// The mixture of one scale, or of its leaves, weights divided by `weight`.
 template <int D>
-Scores<D> score(const GaussianMap<D>& map, int scale, const std::vector<Vector<D>>& points, int threads) {
-  if (scale < 0 || scale >= map.scales())
-    throw std::out_of_range("scale " + std::to_string(scale) + ": the map has the scales 0 to " +
-                            std::to_string(map.scales() - 1));
+Scores scoreScale(const GaussianMap<D>& map, int scale, Cells which, double weight,
+                  const std::vector<Vector<D>>& points, int threads) {
   const std::vector<PlacedPoint<D>> placed = sortByCell<D>(map, scale, points, threads);
   const std::vector<PointsOfCell<D>> cells = cellsOf<D>(placed);
   const std::vector<Factorised<D>> gaussians = factorise<D>(map, scale, threads);
-  const double log_weight = std::log(map.weight(scale));
-  std::vector<std::size_t> in_no_cell(cells.size());
-  Scores<D> scores{std::vector<double>(points.size(), kNothing), 0};
+  const double log_weight = std::log(weight);
+  Scores scores{std::vector<double>(points.size(), kNothing), std::vector<char>(points.size(), false)};
   parallelFor(cells.size(), threads, kCellGrain, [&](std::size_t c) {
-    const std::vector<Neighbour<D>> around = neighbours<D>(map, scale, cells[c].key);
+    const std::vector<Neighbour<D>> around = neighbours<D>(map, scale, which, cells[c].key);
     const bool occupied =
         std::any_of(around.begin(), around.end(), [](const Neighbour<D>& cell) { return cell.is_own; });
-    if (!occupied) in_no_cell[c] = cells[c].last - cells[c].first;
     if (around.empty()) return;
     std::vector<double> terms;
-    for (std::size_t i = cells[c].first; i < cells[c].last; ++i)
+    for (std::size_t i = cells[c].first; i < cells[c].last; ++i) {
       scores.values[placed[i].index] = logOfSum<D>(around, gaussians, points[placed[i].index], terms) - log_weight;
+      scores.in_cell[placed[i].index] = occupied;
+    }
   });
-  scores.in_no_cell = std::accumulate(in_no_cell.begin(), in_no_cell.end(), std::size_t{0});
   return scores;
 }
 
-}  // namespace
-
 template <int D>
-std::vector<double> logLikelihoods(const GaussianMap<D>& map, int scale, const std::vector<Vector<D>>& points,
-                                   int threads) {
-  return score<D>(map, scale, points, threads).values;
+Scores score(const GaussianMap<D>& map, int scale, const std::vector<Vector<D>>& points, int threads) {
+  if (scale < 0 || scale >= map.scales())
+    throw std::out_of_range("scale " + std::to_string(scale) + ": the map has the scales 0 to " +
+                            std::to_string(map.scales() - 1));
+  return scoreScale<D>(map, scale, Cells::All, map.weight(scale), points, threads);
 }
 
 template <int D>
-HeldOutResult heldOutLogLikelihood(const GaussianMap<D>& map, int scale, const std::vector<Vector<D>>& points,
-                                   const HeldOutOptions& options) {
-  checkOptions(options);
-  if (points.empty()) throw std::invalid_argument("no points to score the map with");
-  Scores<D> scores = score<D>(map, scale, points, options.threads);
-  std::vector<double>& values = scores.values;
+Scores scoreLeaves(const GaussianMap<D>& map, const std::vector<Vector<D>>& points, int threads) {
+  const double weight = map.weight(map.scales() - 1);
+  Scores scores = scoreScale<D>(map, 0, Cells::Leaves, weight, points, threads);
+  if (!map.isCompressed()) return scores;
+  for (int s = 1; s < map.scales(); ++s) {
+    const Scores coarser = scoreScale<D>(map, s, Cells::Leaves, weight, points, threads);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (coarser.values[i] == kNothing) continue;
+      scores.values[i] =
+          scores.values[i] == kNothing ? coarser.values[i] : logOfBoth(scores.values[i], coarser.values[i]);
+      scores.in_cell[i] |= coarser.in_cell[i];
+    }
+  }
+  return scores;
+}
 
+HeldOutResult summarise(Scores scores, double volume, const HeldOutOptions& options) {
+  std::vector<double>& values = scores.values;
   HeldOutResult result;
-  result.count = points.size();
-  result.in_no_cell = scores.in_no_cell;
-  result.volume = options.volume > 0.0 ? options.volume : boxVolume<D>(points);
+  result.count = values.size();
+  result.in_no_cell = static_cast<std::size_t>(std::count(scores.in_cell.begin(), scores.in_cell.end(), false));
+  result.volume = volume;
   result.floor = std::log(options.background) - std::log(result.volume);
   double sum = 0.0, sum_inside = 0.0;
   for (double& value : values) {
@@ -235,9 +245,47 @@ HeldOutResult heldOutLogLikelihood(const GaussianMap<D>& map, int scale, const s
   return result;
 }
 
+/// Throws std::invalid_argument if there is nothing to score with.
+template <int D>
+double volumeOf(const std::vector<Vector<D>>& points, const HeldOutOptions& options) {
+  checkOptions(options);
+  if (points.empty()) throw std::invalid_argument("no points to score the map with");
+  return options.volume > 0.0 ? options.volume : boxVolume<D>(points);
+}
+
+}  // namespace
+
+template <int D>
+std::vector<double> logLikelihoods(const GaussianMap<D>& map, int scale, const std::vector<Vector<D>>& points,
+                                   int threads) {
+  return score<D>(map, scale, points, threads).values;
+}
+
+template <int D>
+std::vector<double> logLikelihoods(const GaussianMap<D>& map, const std::vector<Vector<D>>& points, int threads) {
+  return scoreLeaves<D>(map, points, threads).values;
+}
+
+template <int D>
+HeldOutResult heldOutLogLikelihood(const GaussianMap<D>& map, int scale, const std::vector<Vector<D>>& points,
+                                   const HeldOutOptions& options) {
+  const double volume = volumeOf<D>(points, options);
+  return summarise(score<D>(map, scale, points, options.threads), volume, options);
+}
+
+template <int D>
+HeldOutResult heldOutLogLikelihood(const GaussianMap<D>& map, const std::vector<Vector<D>>& points,
+                                   const HeldOutOptions& options) {
+  const double volume = volumeOf<D>(points, options);
+  return summarise(scoreLeaves<D>(map, points, options.threads), volume, options);
+}
+
 #define GAUSSMAP_INSTANTIATE(D)                                                                                   \
   template std::vector<double> logLikelihoods<D>(const GaussianMap<D>&, int, const std::vector<Vector<D>>&, int); \
+  template std::vector<double> logLikelihoods<D>(const GaussianMap<D>&, const std::vector<Vector<D>>&, int);      \
   template HeldOutResult heldOutLogLikelihood<D>(const GaussianMap<D>&, int, const std::vector<Vector<D>>&,       \
+                                                 const HeldOutOptions&);                                          \
+  template HeldOutResult heldOutLogLikelihood<D>(const GaussianMap<D>&, const std::vector<Vector<D>>&,            \
                                                  const HeldOutOptions&);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)

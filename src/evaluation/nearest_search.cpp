@@ -85,6 +85,9 @@ class Search {
  public:
   explicit Search(const PointTree& tree) : tree_(tree) {}
 
+  /// Pairs of points looked at so far.
+  std::size_t comparisons() const { return comparisons_; }
+
   /// Finds the nearest of each query of the group, or stops when all are known to be at most `enough` [m^2] away.
   void run(Group& group, double enough) {
     if (go(group, enough, kPatience)) return;
@@ -127,6 +130,7 @@ class Search {
       if (square >= group.worst) continue;
       if (patience-- == 0) return false;
       group.look(tree_, nodes[at]);
+      comparisons_ += group.count * nodes[at].distinct;
       if (group.worst <= enough) return true;
     }
     return true;
@@ -134,6 +138,7 @@ class Search {
 
   const PointTree& tree_;
   std::vector<Open> open_;
+  std::size_t comparisons_ = 0;
 };
 
 struct Range {
@@ -170,9 +175,11 @@ PointTreePair::PointTreePair(const std::vector<Vector<3>>& a, const std::vector<
   parallelFor(2, threads, 1, [&](std::size_t i) { trees_[i] = std::make_unique<PointTree>(i == 0 ? a : b); });
 }
 
-std::vector<double> nearestDistances(const PointTree& from, const PointTree& to, int threads) {
+std::vector<double> nearestDistances(const PointTree& from, const PointTree& to, int threads,
+                                     std::size_t* comparisons) {
   const std::vector<Range> groups = groupsOf(from);
   std::vector<double> distances(from.size());
+  std::atomic<std::size_t> all_comparisons{0};
   parallelFor((groups.size() + kGrain - 1) / kGrain, threads, 1, [&](std::size_t task) {
     Search search(to);
     Group group;
@@ -183,7 +190,9 @@ std::vector<double> nearestDistances(const PointTree& from, const PointTree& to,
       for (std::size_t i = 0; i < groups[g].count; ++i)
         distances[from.index()[groups[g].first + i]] = std::sqrt(group.best[i]);
     }
+    all_comparisons += search.comparisons();
   });
+  if (comparisons != nullptr) *comparisons = all_comparisons;
   return distances;
 }
 
@@ -223,6 +232,8 @@ class LargestSearch {
       look({node.first + first, std::min<std::uint32_t>(kGroupSize, distinct - first)});
   }
 
+  std::size_t comparisons() const { return search_.comparisons(); }
+
   void look(const Range& range) {
     group_.fill(from_, range.first, range.count);
     search_.run(group_, largest_.get());
@@ -252,13 +263,19 @@ class LargestSearch {
 
 }  // namespace
 
-double largestNearestDistance(const PointTree& from, const PointTree& to, int threads) {
+double largestNearestDistance(const PointTree& from, const PointTree& to, int threads, std::size_t* comparisons) {
   Largest largest;
   LargestSearch first_guess(from, to, largest);
   const std::size_t step = std::max<std::size_t>(1, from.size() / kGuesses);
   for (std::size_t i = 0; i < from.size(); i += step) first_guess.look({std::uint32_t(i), 1});
   const std::vector<std::uint32_t> parts = nodesOf(from, kPartSize);
-  parallelFor(parts.size(), threads, 1, [&](std::size_t i) { LargestSearch(from, to, largest).below(parts[i]); });
+  std::atomic<std::size_t> all_comparisons{first_guess.comparisons()};
+  parallelFor(parts.size(), threads, 1, [&](std::size_t i) {
+    LargestSearch search(from, to, largest);
+    search.below(parts[i]);
+    all_comparisons += search.comparisons();
+  });
+  if (comparisons != nullptr) *comparisons = all_comparisons;
   return std::sqrt(largest.get());
 }
 

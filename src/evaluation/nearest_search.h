@@ -20,10 +20,14 @@ class PointTreePair {
 };
 
 /// For every point of `from` the distance to the nearest point of `to` [m], in the order the points of `from` came
-/// in. Neither tree is empty. `threads` = 0: all; never shows in the result.
-std::vector<double> nearestDistances(const PointTree& from, const PointTree& to, int threads);
+/// in. Neither tree is empty. `threads` = 0: all; never shows in the result. `comparisons`, if given: how many pairs of
+/// points were looked at, what the time goes into.
+std::vector<double> nearestDistances(const PointTree& from, const PointTree& to, int threads,
+                                     std::size_t* comparisons = nullptr);
 
-/// The largest of these distances [m], the same to the last bit, without computing them all.
-double largestNearestDistance(const PointTree& from, const PointTree& to, int threads);
+/// The largest of these distances [m], the same to the last bit, without computing them all. Here the threads show in
+/// the comparisons.
+double largestNearestDistance(const PointTree& from, const PointTree& to, int threads,
+                              std::size_t* comparisons = nullptr);
 
 }  // namespace gaussmap

@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-#include <string>
 
 #include "common/parallel.h"
+#include "evaluation/sample_within.h"
+#include "gaussmap/map/leaves.h"
+#include "gaussmap/map/member_boxes.h"
 
 namespace gaussmap {
 namespace {
@@ -17,12 +18,6 @@ std::size_t mostTries(std::size_t count) {
   return 1000 + 200 * count;
 }
 
-template <int D>
-void checkScale(const GaussianMap<D>& map, int scale) {
-  if (scale < 0 || scale >= map.scales())
-    throw std::out_of_range("scale " + std::to_string(scale) + ": the map has " + std::to_string(map.scales()));
-}
-
 /// A number for one Gaussian that other cells coming or going do not change.
 template <int D>
 std::uint64_t partOf(int scale, const CellKey<D>& key, std::size_t rank) {
@@ -31,27 +26,30 @@ std::uint64_t partOf(int scale, const CellKey<D>& key, std::size_t rank) {
   return Random(part ^ rank).bits();
 }
 
-/// Fills at most `count` slots from `first` on and returns how many.
+/// Fills at most `count` slots from `first` on and returns how many. `box` may be null.
 template <int D>
-std::size_t sampleOne(const GaussianMap<D>& map, int scale, std::size_t index, std::uint64_t seed, std::size_t first,
-                      std::size_t count, MapSamples<D>& samples) {
+std::size_t sampleOne(const GaussianMap<D>& map, int scale, std::size_t index, const Box<D>* box, std::uint64_t seed,
+                      std::size_t first, std::size_t count, MapSamples<D>& samples) {
   const std::size_t cell = map.cellOf(index, scale);
   const CellKey<D>& key = map.scale(scale).keys[cell];
   const Vector<D> centre = map.grid().centre(key, scale);
   const GaussianSampler<D> sampler(map.localGaussian(index, scale));
   // A cell takes the points from half a lattice step below its lower face to half a step below its upper face.
   // Staying half a step away from either end keeps the sum with the centre from rounding into the next cell.
-  const double lowest = -0.5 * map.grid().side(scale);
-  const double highest = -lowest - map.grid().side(0) / static_cast<double>(kStepsPerCell);
+  const double step = map.grid().side(0) / static_cast<double>(kStepsPerCell), half = 0.5 * map.grid().side(scale);
+  Vector<D> lowest = Vector<D>::Constant(-half), highest = Vector<D>::Constant(half - step);
+  if (box != nullptr) {
+    lowest = lowest.cwiseMax(box->low - centre);
+    highest = highest.cwiseMin(box->high - centre - Vector<D>::Constant(step));
+  }
 
   Random random = Random::forPart(seed, partOf<D>(scale, key, index - map.gaussiansOf(cell, scale).first));
   std::size_t placed = 0;
   for (std::size_t tries = mostTries(count); placed < count && tries > 0; --tries) {
     const Vector<D> standard = GaussianSampler<D>::standard(random);
     const Vector<D> offset = sampler.fromStandard(standard);
-    if (!((offset.array() >= lowest).all() && (offset.array() <= highest).all())) continue;
+    if (!((offset.array() >= lowest.array()).all() && (offset.array() <= highest.array()).all())) continue;
     samples.points[first + placed] = centre + offset;
-    samples.gaussian[first + placed] = static_cast<std::uint32_t>(index);
     samples.mahalanobis[first + placed] = standard.norm();
     ++placed;
   }
@@ -75,22 +73,12 @@ void closeGaps(const std::vector<std::size_t>& first, const std::vector<std::siz
   samples.mahalanobis.resize(end);
 }
 
-}  // namespace
-
 template <int D>
-std::vector<Vector<D>> MapSamples<D>::within(double sigmas) const {
-  std::vector<Vector<D>> kept;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (mahalanobis[i] <= sigmas) kept.push_back(points[i]);
-  return kept;
-}
-
-template <int D>
-std::vector<std::size_t> sampleCounts(const GaussianMap<D>& map, int scale, const SampleOptions& options) {
-  checkScale(map, scale);
-  std::vector<double> shares(map.gaussianCount(scale));
+std::vector<std::size_t> countsOf(const GaussianMap<D>& map, const std::vector<GaussianId>& chosen,
+                                  const SampleOptions& options) {
+  std::vector<double> shares(chosen.size());
   parallelFor(shares.size(), options.threads, 1024, [&](std::size_t i) {
-    const Gaussian<D> gaussian = map.localGaussian(i, scale);
+    const Gaussian<D> gaussian = map.localGaussian(chosen[i].index, chosen[i].scale);
     shares[i] =
         options.share == SampleShare::Volume ? std::exp(0.5 * logDeterminant<D>(gaussian.cov)) : gaussian.weight;
   });
@@ -104,9 +92,11 @@ std::vector<std::size_t> sampleCounts(const GaussianMap<D>& map, int scale, cons
   return counts;
 }
 
+/// Samples of some Gaussians, each within its box; no boxes: within their cells.
 template <int D>
-MapSamples<D> sampleMap(const GaussianMap<D>& map, int scale, const SampleOptions& options) {
-  const std::vector<std::size_t> counts = sampleCounts(map, scale, options);
+MapSamples<D> sampleChosen(const GaussianMap<D>& map, const std::vector<GaussianId>& chosen,
+                           const std::vector<Box<D>>& boxes, const SampleOptions& options) {
+  const std::vector<std::size_t> counts = countsOf<D>(map, chosen, options);
   std::vector<std::size_t> first(counts.size()), placed(counts.size());
   std::size_t total = 0;
   for (std::size_t i = 0; i < counts.size(); ++i) {
@@ -118,16 +108,55 @@ MapSamples<D> sampleMap(const GaussianMap<D>& map, int scale, const SampleOption
   samples.gaussian.resize(total);
   samples.mahalanobis.resize(total);
   parallelFor(counts.size(), options.threads, kGrain, [&](std::size_t i) {
-    placed[i] = sampleOne<D>(map, scale, i, options.seed, first[i], counts[i], samples);
+    const Box<D>* const box = boxes.empty() ? nullptr : &boxes[i];
+    placed[i] = sampleOne<D>(map, chosen[i].scale, chosen[i].index, box, options.seed, first[i], counts[i], samples);
+    std::fill_n(samples.gaussian.begin() + static_cast<std::ptrdiff_t>(first[i]), placed[i],
+                static_cast<std::uint32_t>(i));
   });
   if (placed != counts) closeGaps<D>(first, placed, samples);
   return samples;
 }
 
+}  // namespace
+
+template <int D>
+std::vector<Vector<D>> MapSamples<D>::within(double sigmas) const {
+  std::vector<Vector<D>> kept;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (mahalanobis[i] <= sigmas) kept.push_back(points[i]);
+  return kept;
+}
+
+template <int D>
+std::vector<std::size_t> sampleCounts(const GaussianMap<D>& map, int scale, const SampleOptions& options) {
+  return countsOf<D>(map, gaussiansOfScale<D>(map, scale), options);
+}
+
+template <int D>
+MapSamples<D> sampleWithin(const GaussianMap<D>& map, int scale, const std::vector<Box<D>>& boxes,
+                           const SampleOptions& options) {
+  return sampleChosen<D>(map, gaussiansOfScale<D>(map, scale), boxes, options);
+}
+
+template <int D>
+MapSamples<D> sampleMap(const GaussianMap<D>& map, int scale, const SampleOptions& options) {
+  const std::vector<GaussianId> chosen = gaussiansOfScale<D>(map, scale);
+  const bool boxed = options.bounds == SampleBounds::MemberCells && scale > 0;
+  return sampleChosen<D>(map, chosen, boxed ? memberBoxes<D>(map, scale) : std::vector<Box<D>>(), options);
+}
+
+template <int D>
+MapSamples<D> sampleLeaves(const GaussianMap<D>& map, const SampleOptions& options) {
+  return sampleChosen<D>(map, leaves<D>(map), {}, options);
+}
+
 #define GAUSSMAP_INSTANTIATE(D)                                                                        \
   template struct MapSamples<D>;                                                                       \
   template std::vector<std::size_t> sampleCounts<D>(const GaussianMap<D>&, int, const SampleOptions&); \
-  template MapSamples<D> sampleMap<D>(const GaussianMap<D>&, int, const SampleOptions&);
+  template MapSamples<D> sampleWithin<D>(const GaussianMap<D>&, int, const std::vector<Box<D>>&,       \
+                                         const SampleOptions&);                                        \
+  template MapSamples<D> sampleMap<D>(const GaussianMap<D>&, int, const SampleOptions&);               \
+  template MapSamples<D> sampleLeaves<D>(const GaussianMap<D>&, const SampleOptions&);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)
 #undef GAUSSMAP_INSTANTIATE

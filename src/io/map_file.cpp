@@ -16,6 +16,7 @@
 #include "gaussmap/io/error.h"
 #include "io/sqlite.h"
 #include "io/tile_codec.h"
+#include "map/link_cells.h"
 
 namespace gaussmap {
 namespace {
@@ -224,22 +225,17 @@ OrderedScale<D> inKeyOrder(const Tile<D>& tile, const MapOptions& options, int s
 template <int D>
 void link(MapScale<D>& finer, const std::vector<std::uint32_t>& labels, MapScale<D>& coarse, const Grid<D>& grid,
           int s) {
-  std::size_t next_gaussian = 0;
-  for (std::size_t child = 0; child < finer.keys.size(); ++child) {
-    const CellKey<D> parent = grid.ancestor(finer.keys[child], s - 1, s);
-    if (coarse.first_child.empty() || parent != coarse.keys[coarse.first_child.size() - 1]) {
-      coarse.first_child.push_back(static_cast<std::uint32_t>(child));
-      const std::size_t cell = coarse.first_child.size() - 1;
-      if (cell >= coarse.keys.size() || coarse.keys[cell] != parent)
-        throw std::invalid_argument("cell " + toString<D>(parent) + " of scale " + std::to_string(s) + " is missing");
-    }
-    const std::size_t cell = coarse.first_child.size() - 1;
-    const std::size_t first = coarse.first_gaussian.empty() ? cell : coarse.first_gaussian[cell];
-    const std::size_t last = finer.first_gaussian.empty() ? child + 1 : finer.first_gaussian[child + 1];
-    for (; next_gaussian < last; ++next_gaussian)
-      finer.parent.push_back(static_cast<std::uint32_t>(first + labels[next_gaussian]));
+  coarse.first_child = linkCells<D>(finer.keys, coarse.keys, grid, s);
+  const auto startOf = [](const std::vector<std::uint32_t>& first_gaussian, std::size_t cell) {
+    return first_gaussian.empty() ? cell : std::size_t{first_gaussian[cell]};
+  };
+  finer.parent.reserve(labels.size());
+  for (std::size_t cell = 0; cell < coarse.keys.size(); ++cell) {
+    const std::size_t first = startOf(coarse.first_gaussian, cell);
+    const std::size_t last = startOf(finer.first_gaussian, coarse.first_child[cell + 1]);
+    while (finer.parent.size() < last)
+      finer.parent.push_back(static_cast<std::uint32_t>(first + labels[finer.parent.size()]));
   }
-  coarse.first_child.push_back(static_cast<std::uint32_t>(finer.keys.size()));
 }
 
 template <int D>

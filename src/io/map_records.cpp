@@ -10,6 +10,7 @@
 #include <string>
 
 #include "gaussmap/io/map_pcd.h"
+#include "map/link_cells.h"
 
 namespace gaussmap {
 namespace {
@@ -169,21 +170,13 @@ GaussianMap<3> fromRecords(const GaussianRecords& all) {
     }
     if (s == 0) continue;
     MapScale<3>& finer = scales[static_cast<std::size_t>(s) - 1];
-    std::size_t cell = 0;
-    for (std::size_t child = 0; child < finer.keys.size(); ++child) {
-      const CellKey<3> parent = grid.ancestor(finer.keys[child], s - 1, s);
-      if (child == 0 || parent != scale.keys[cell]) {
-        cell = scale.first_child.size();
-        if (cell >= scale.keys.size() || scale.keys[cell] != parent)
-          throw std::invalid_argument("cell " + toString<3>(parent) + " of scale " + std::to_string(s) + " is missing");
-        scale.first_child.push_back(static_cast<std::uint32_t>(child));
-      }
-      for (std::size_t i = finer.first_gaussian[child]; i < finer.first_gaussian[child + 1]; ++i)
-        finer.parent.push_back(static_cast<std::uint32_t>(
-            nearestParent(finer.gaussians[i], grid.centreInParent(finer.keys[child], s - 1), scale.gaussians,
-                          scale.first_gaussian[cell], scale.first_gaussian[cell + 1])));
-    }
-    scale.first_child.push_back(static_cast<std::uint32_t>(finer.keys.size()));
+    scale.first_child = linkCells<3>(finer.keys, scale.keys, grid, s);
+    for (std::size_t cell = 0; cell < scale.keys.size(); ++cell)
+      for (std::size_t child = scale.first_child[cell]; child < scale.first_child[cell + 1]; ++child)
+        for (std::size_t i = finer.first_gaussian[child]; i < finer.first_gaussian[child + 1]; ++i)
+          finer.parent.push_back(static_cast<std::uint32_t>(
+              nearestParent(finer.gaussians[i], grid.centreInParent(finer.keys[child], s - 1), scale.gaussians,
+                            scale.first_gaussian[cell], scale.first_gaussian[cell + 1])));
   }
   for (MapScale<3>& scale : scales)
     if (scale.gaussians.size() == scale.keys.size()) scale.first_gaussian.clear();

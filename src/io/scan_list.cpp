@@ -22,12 +22,6 @@ std::string_view takeNumber(std::string_view& rest) {
   return digits;
 }
 
-bool isScanName(const std::filesystem::path& name) {
-  std::string extension = name.extension().string();
-  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return extension == ".pcd" && name.string().front() != '.';
-}
-
 std::vector<std::filesystem::path> scansIn(const std::filesystem::path& directory) {
   std::vector<std::filesystem::path> scans;
   std::error_code error;
@@ -45,6 +39,12 @@ std::vector<std::filesystem::path> scansIn(const std::filesystem::path& director
 }
 
 }  // namespace
+
+bool isScanName(const std::filesystem::path& name) {
+  std::string extension = name.extension().string();
+  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return extension == ".pcd" && name.string().front() != '.';
+}
 
 bool naturalLess(const std::string& a, const std::string& b) {
   std::string_view rest_a = a, rest_b = b;

@@ -16,10 +16,14 @@ constexpr double kMostOffset = 0.501;  // of a mean from the cell's centre, in s
   throw std::invalid_argument("scale " + std::to_string(scale) + ": " + what);
 }
 
-/// Do `starts` cut `total` entries into `parts` ranges, none of them empty?
-bool cutsIntoParts(const std::vector<std::uint32_t>& starts, std::size_t parts, std::size_t total) {
-  if (starts.size() != parts + 1 || starts.front() != 0 || starts.back() != total) return false;
-  return std::adjacent_find(starts.begin(), starts.end(), [](auto a, auto b) { return a >= b; }) == starts.end();
+/// Do `starts` cut `total` entries into `parts` ranges, one after the other?
+bool cutsIntoRanges(const std::vector<std::uint32_t>& starts, std::size_t parts, std::size_t total) {
+  return starts.size() == parts + 1 && starts.front() == 0 && starts.back() == total &&
+         std::is_sorted(starts.begin(), starts.end());
+}
+
+bool hasEmptyRange(const std::vector<std::uint32_t>& starts) {
+  return std::adjacent_find(starts.begin(), starts.end()) != starts.end();
 }
 
 template <int D>
@@ -38,8 +42,9 @@ void checkScale(const MapScale<D>& scale, int s, double side) {
     if (!gaussian.mean.allFinite() || gaussian.mean.cwiseAbs().maxCoeff() > kMostOffset * side)
       refuse(s, "a Gaussian's mean lies outside its cell");
   }
-  if (scale.first_gaussian.empty() ? scale.gaussianCount() != cells
-                                   : !cutsIntoParts(scale.first_gaussian, cells, scale.gaussianCount()))
+  if (scale.first_gaussian.empty()
+          ? scale.gaussianCount() != cells
+          : !cutsIntoRanges(scale.first_gaussian, cells, scale.gaussianCount()) || hasEmptyRange(scale.first_gaussian))
     refuse(s, "Gaussians do not match the cells");
 }
 
@@ -56,7 +61,7 @@ double weightOf(const MapScale<D>& scale) {
 template <int D>
 void checkLinks(const GaussianMap<D>& map, int s) {
   const MapScale<D>&finer = map.scale(s - 1), &coarse = map.scale(s);
-  if (!cutsIntoParts(coarse.first_child, coarse.keys.size(), finer.keys.size()))
+  if (!cutsIntoRanges(coarse.first_child, coarse.keys.size(), finer.keys.size()))
     refuse(s, "children do not match the cells of the finer scale");
   if (finer.parent.size() != finer.gaussianCount()) refuse(s - 1, "not every Gaussian has a parent");
   for (std::size_t cell = 0; cell < coarse.keys.size(); ++cell) {
@@ -87,7 +92,10 @@ GaussianMap<D>::GaussianMap(const MapOptions& options, std::vector<MapScale<D>> 
   const std::vector<CellKey<D>>& coarsest = scales_.back().keys;
   if (std::adjacent_find(coarsest.begin(), coarsest.end(), [](auto& a, auto& b) { return !(a < b); }) != coarsest.end())
     refuse(grid_.scales() - 1, "cells out of order or there twice");
-  for (const MapScale<D>& level : scales_) weights_.push_back(weightOf<D>(level));
+  for (const MapScale<D>& level : scales_) {
+    weights_.push_back(weightOf<D>(level));
+    compressed_ |= hasEmptyRange(level.first_child);
+  }
 }
 
 template <int D>
@@ -129,6 +137,7 @@ IndexRange GaussianMap<D>::childCells(std::size_t cell, int s) const {
 template <int D>
 IndexRange GaussianMap<D>::gaussiansUnder(std::size_t cell, int s) const {
   const IndexRange cells = childCells(cell, s);
+  if (cells.empty()) return {0, 0};
   return {gaussiansOf(cells.first, s - 1).first, gaussiansOf(cells.last - 1, s - 1).last};
 }
 

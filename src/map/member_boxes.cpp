@@ -1,34 +1,57 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gaussmap/map/member_boxes.h"
 
+#include <cmath>
 #include <limits>
 
+#include "map/boxes_of_parents.h"
+
 namespace gaussmap {
+namespace {
 
 template <int D>
-std::vector<Box<D>> memberBoxes(const GaussianMap<D>& map, int scale) {
-  std::vector<Box<D>> boxes(map.gaussianCount(0));
-  const double half = 0.5 * map.grid().side(0);
-  for (std::size_t cell = 0; cell < map.cellCount(0); ++cell) {
-    const Vector<D> centre = map.grid().centre(map.scale(0).keys[cell], 0);
-    const IndexRange range = map.gaussiansOf(cell, 0);
-    for (std::size_t i = range.first; i < range.last; ++i)
-      boxes[i] = {(centre.array() - half).matrix(), (centre.array() + half).matrix()};
-  }
-  for (int s = 0; s < scale; ++s) {
-    const double far = std::numeric_limits<double>::infinity();
-    std::vector<Box<D>> coarser(map.gaussianCount(s + 1), {Vector<D>::Constant(far), Vector<D>::Constant(-far)});
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-      Box<D>& box = coarser[map.parentOf(i, s)];
-      box.low = box.low.cwiseMin(boxes[i].low);
-      box.high = box.high.cwiseMax(boxes[i].high);
-    }
-    boxes = std::move(coarser);
+Box<D> boxOfCell(const GaussianMap<D>& map, std::size_t cell, int scale) {
+  const Vector<D> centre = map.grid().centre(map.scale(scale).keys[cell], scale);
+  const double half = 0.5 * map.grid().side(scale);
+  return {(centre.array() - half).matrix(), (centre.array() + half).matrix()};
+}
+
+}  // namespace
+
+template <int D>
+std::vector<Box<D>> boxesOfParents(const std::vector<Box<D>>& members, const std::vector<std::uint32_t>& parent,
+                                   std::size_t count) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  std::vector<Box<D>> boxes(count, {Vector<D>::Constant(kFar), Vector<D>::Constant(-kFar)});
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    Box<D>& box = boxes[parent[i]];
+    box.low = box.low.cwiseMin(members[i].low);
+    box.high = box.high.cwiseMax(members[i].high);
   }
   return boxes;
 }
 
-template std::vector<Box<2>> memberBoxes<2>(const GaussianMap<2>&, int);
-template std::vector<Box<3>> memberBoxes<3>(const GaussianMap<3>&, int);
+template <int D>
+std::vector<Box<D>> memberBoxes(const GaussianMap<D>& map, int scale) {
+  std::vector<Box<D>> boxes;
+  for (int s = 0; s <= scale; ++s) {
+    boxes =
+        boxesOfParents<D>(boxes, s == 0 ? std::vector<std::uint32_t>() : map.scale(s - 1).parent, map.gaussianCount(s));
+    for (std::size_t cell = 0; cell < map.cellCount(s); ++cell) {
+      const IndexRange range = map.gaussiansOf(cell, s);
+      for (std::size_t i = range.first; i < range.last; ++i)
+        if (std::isinf(boxes[i].low(0))) boxes[i] = boxOfCell<D>(map, cell, s);
+    }
+  }
+  return boxes;
+}
+
+#define GAUSSMAP_INSTANTIATE(D)                                                                                 \
+  template std::vector<Box<D>> boxesOfParents<D>(const std::vector<Box<D>>&, const std::vector<std::uint32_t>&, \
+                                                 std::size_t);                                                  \
+  template std::vector<Box<D>> memberBoxes<D>(const GaussianMap<D>&, int);
+GAUSSMAP_INSTANTIATE(2)
+GAUSSMAP_INSTANTIATE(3)
+#undef GAUSSMAP_INSTANTIATE
 
 }  // namespace gaussmap

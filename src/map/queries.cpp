@@ -46,31 +46,51 @@ void improve(const GaussianMap<D>& map, const Vector<D>& point, std::size_t cell
   }
 }
 
-}  // namespace
-
+/// ln(weight * density) at a point of the Gaussians of a cell.
 template <int D>
-double logLikelihood(const GaussianMap<D>& map, const Vector<D>& point, int scale) {
-  const CellKey<D> key = map.grid().keyOf(point, scale);
-  std::vector<double> terms;
-  forEachNeighbour<D>(map, key, scale, [&](std::size_t cell) {
-    const Vector<D> local = point - map.grid().centre(map.scale(scale).keys[cell], scale);
-    const IndexRange range = map.gaussiansOf(cell, scale);
-    for (std::size_t i = range.first; i < range.last; ++i) {
-      const Gaussian<D> gaussian = map.localGaussian(i, scale);
-      terms.push_back(std::log(gaussian.weight) + logDensity<D>(local, gaussian));
-    }
-  });
+void addTerms(const GaussianMap<D>& map, const Vector<D>& point, std::size_t cell, int scale,
+              std::vector<double>& terms) {
+  const Vector<D> local = point - map.grid().centre(map.scale(scale).keys[cell], scale);
+  const IndexRange range = map.gaussiansOf(cell, scale);
+  for (std::size_t i = range.first; i < range.last; ++i) {
+    const Gaussian<D> gaussian = map.localGaussian(i, scale);
+    terms.push_back(std::log(gaussian.weight) + logDensity<D>(local, gaussian));
+  }
+}
+
+/// ln of the sum of e^term, divided by the weight; minus infinity without terms.
+double logOfMixture(const std::vector<double>& terms, double weight) {
   if (terms.empty()) return -std::numeric_limits<double>::infinity();
   double largest = terms.front();
   for (double term : terms) largest = std::max(largest, term);
   double sum = 0.0;
   for (double term : terms) sum += std::exp(term - largest);
-  return largest + std::log(sum) - std::log(map.weight(scale));
+  return largest + std::log(sum) - std::log(weight);
+}
+
+}  // namespace
+
+template <int D>
+double logLikelihood(const GaussianMap<D>& map, const Vector<D>& point, int scale) {
+  std::vector<double> terms;
+  forEachNeighbour<D>(map, map.grid().keyOf(point, scale), scale,
+                      [&](std::size_t cell) { addTerms<D>(map, point, cell, scale, terms); });
+  return logOfMixture(terms, map.weight(scale));
+}
+
+template <int D>
+double logLikelihood(const GaussianMap<D>& map, const Vector<D>& point) {
+  std::vector<double> terms;
+  for (int scale = 0; scale < map.scales(); ++scale)
+    forEachNeighbour<D>(map, map.grid().keyOf(point, scale), scale, [&](std::size_t cell) {
+      if (map.isLeaf(cell, scale)) addTerms<D>(map, point, cell, scale, terms);
+    });
+  return logOfMixture(terms, map.weight(map.scales() - 1));
 }
 
 template <int D>
 std::optional<Nearest<D>> nearest(const GaussianMap<D>& map, const Vector<D>& point, int scale) {
-  if (map.empty()) return std::nullopt;
+  if (map.cellCount(scale) == 0) return std::nullopt;
   Nearest<D> best{std::numeric_limits<std::size_t>::max(), std::numeric_limits<double>::infinity()};
   forEachNeighbour<D>(map, map.grid().keyOf(point, scale), scale,
                       [&](std::size_t cell) { improve<D>(map, point, cell, scale, best); });
@@ -129,6 +149,7 @@ std::optional<Vector<D>> normalAt(const GaussianMap<D>& map, const Vector<D>& po
 
 #define GAUSSMAP_INSTANTIATE(D)                                                                \
   template double logLikelihood<D>(const GaussianMap<D>&, const Vector<D>&, int);              \
+  template double logLikelihood<D>(const GaussianMap<D>&, const Vector<D>&);                   \
   template std::optional<Nearest<D>> nearest<D>(const GaussianMap<D>&, const Vector<D>&, int); \
   template std::optional<Vector<D>> normalAt<D>(const GaussianMap<D>&, const Vector<D>&);
 GAUSSMAP_INSTANTIATE(2)

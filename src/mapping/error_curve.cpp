@@ -3,39 +3,55 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
+#include "evaluation/sample_within.h"
 #include "gaussmap/evaluation/hausdorff.h"
 #include "gaussmap/evaluation/nearest_distances.h"
-#include "gaussmap/evaluation/sample_map.h"
+#include "gaussmap/map/member_boxes.h"
+#include "map/boxes_of_parents.h"
 #include "mapping/refine_scale.h"
 
 namespace gaussmap {
 namespace {
 
-/// Measures cuts of coarse scales against samples of the finest.
+/// Measures cuts of coarse scales against samples of the finest, one scale after the other from the finest up.
 class CutMeter {
  public:
   CutMeter(const GaussianMap<3>& map, const RefineOptions& options, const CurveOptions& curve)
-      : grid_(map.grid()), curve_(curve), threads_(options.threads) {
+      : grid_(map.grid()), curve_(curve), threads_(options.threads), finer_boxes_(memberBoxes<3>(map, 0)) {
     SampleOptions data{curve.data, 1, SampleShare::Mass, curve.seed, options.threads};
     if (!map.empty()) data_ = sampleMap(map, 0, data).points;
   }
 
-  ErrorPoint measure(const MapScale<3>& cut, int scale) const {
+  ErrorPoint measure(const ScaleCuts<3>& cuts, std::size_t extra) const {
+    const ScaleCut<3> cut = cuts.cut(extra);
+    const std::vector<Box<3>> boxes = boxesOfParents<3>(finer_boxes_, cut.parent, cut.gaussians.size());
     MapScale<3> alone;  // the scale as a map of its own: its samples need nothing else, but its key order is another
+    std::vector<Box<3>> alone_boxes;
     alone.first_gaussian.push_back(0);
-    for (const std::uint32_t from : keyOrder<3>(cut.keys, 2, 0)) {
-      alone.keys.push_back(cut.keys[from]);
-      for (std::size_t i = cut.first_gaussian[from]; i < cut.first_gaussian[from + 1]; ++i)
+    for (const std::uint32_t from : keyOrder<3>(cuts.keys(), 2, 0)) {
+      alone.keys.push_back(cuts.keys()[from]);
+      for (std::size_t i = cut.first_gaussian[from]; i < cut.first_gaussian[from + 1]; ++i) {
         alone.gaussians.push_back(cut.gaussians[i]);
+        alone_boxes.push_back(boxes[i]);
+      }
       alone.first_gaussian.push_back(static_cast<std::uint32_t>(alone.gaussians.size()));
     }
-    const GaussianMap<3> map({grid_.side(scale), 2, 1, grid_.options().noise}, {alone});
+    const GaussianMap<3> map({grid_.side(cuts.scale()), 2, 1, grid_.options().noise}, {alone});
     const SampleOptions options{curve_.samples, 1, SampleShare::Volume, curve_.seed, threads_};
-    const DistanceSummary error = summarise(nearestDistances(sampleMap(map, 0, options).points, data_, threads_));
+    const std::vector<Vector<3>> samples = sampleWithin<3>(map, 0, alone_boxes, options).points;
+    const DistanceSummary error = summarise(nearestDistances(samples, data_, threads_));
     return {cut.gaussians.size(), error.q99, error.q95, error.mean};
+  }
+
+  /// This cut becomes the finer scale of the next one. Returns `extra`.
+  std::size_t choose(const ScaleCuts<3>& cuts, std::size_t extra) {
+    const ScaleCut<3> cut = cuts.cut(extra);
+    finer_boxes_ = boxesOfParents<3>(finer_boxes_, cut.parent, cut.gaussians.size());
+    return extra;
   }
 
  private:
@@ -43,6 +59,7 @@ class CutMeter {
   const CurveOptions curve_;
   const int threads_;
   std::vector<Vector<3>> data_;
+  std::vector<Box<3>> finer_boxes_;  // memberBoxes() of the finer scale
 };
 
 void checkCurve(const CurveOptions& curve) {
@@ -57,11 +74,20 @@ ErrorCurve curveOf(const CutMeter& meter, const ScaleCuts<3>& cuts, const CurveO
   ErrorCurve curve{cuts.scale(), {}};
   for (const double multiple : options.multiples) {
     const std::size_t extra = std::min(cuts.extraOf(multiple), cuts.mostExtra());
-    const ErrorPoint point = meter.measure(cuts.cut(extra), cuts.scale());
+    const ErrorPoint point = meter.measure(cuts, extra);
     if (curve.points.empty() || point.gaussians > curve.points.back().gaussians) curve.points.push_back(point);
     if (extra == cuts.mostExtra()) break;
   }
   return curve;
+}
+
+/// Curves that are longer than any true ones when they are written in decimals.
+std::vector<ErrorCurve> widestCurves(int scales, const CurveOptions& options) {
+  constexpr double kLong = 1.2345678901234567e-100;
+  std::vector<ErrorCurve> curves;
+  for (int s = 1; s < scales; ++s)
+    curves.push_back({s, {options.multiples.size(), {std::numeric_limits<std::uint32_t>::max(), kLong, kLong, kLong}}});
+  return curves;
 }
 
 RefineOptions byAgglomeration(RefineOptions options) {
@@ -74,11 +100,11 @@ RefineOptions byAgglomeration(RefineOptions options) {
 
 RefinedMap refineWithCurves(GaussianMap<3> map, const RefineOptions& options, const CurveOptions& curve) {
   checkCurve(curve);
-  const CutMeter meter(map, options, curve);
+  CutMeter meter(map, options, curve);
   std::vector<ErrorCurve> curves;
   GaussianMap<3> refined = refineByChoice<3>(std::move(map), byAgglomeration(options), [&](const ScaleCuts<3>& cuts) {
     curves.push_back(curveOf(meter, cuts, curve));
-    return cuts.extraAllowed(options);
+    return meter.choose(cuts, cuts.extraAllowed(options));
   });
   return {std::move(refined), std::move(curves)};
 }
@@ -88,24 +114,24 @@ RefinedToError refineToError(GaussianMap<3> map, double max_error, const RefineO
   checkCurve(curve);
   if (!(std::isfinite(max_error) && max_error > 0.0))
     throw std::invalid_argument("max_error = " + std::to_string(max_error) + ": must be a positive number of metres");
-  const CutMeter meter(map, options, curve);
+  CutMeter meter(map, options, curve);
   std::vector<ErrorCurve> curves;
   std::vector<ErrorNotReached> not_reached;
   GaussianMap<3> refined = refineByChoice<3>(std::move(map), byAgglomeration(options), [&](const ScaleCuts<3>& cuts) {
     curves.push_back(curveOf(meter, cuts, curve));
-    const auto error = [&](std::size_t extra) { return meter.measure(cuts.cut(extra), cuts.scale()).q95; };
+    const auto error = [&](std::size_t extra) { return meter.measure(cuts, extra).q95; };
     std::size_t low = 0, high = cuts.mostExtra();  // error(low) too large, error(high) small enough
     const double least = error(high);
     if (least > max_error) {
       not_reached.push_back({cuts.scale(), least});
-      return high;
+      return meter.choose(cuts, high);
     }
-    if (error(low) <= max_error) return low;
+    if (error(low) <= max_error) return meter.choose(cuts, low);
     while (high - low > 1 + high / 200) {  // to half a percent
       const std::size_t middle = low + (high - low) / 2;
       (error(middle) <= max_error ? high : low) = middle;
     }
-    return high;
+    return meter.choose(cuts, high);
   });
   return {{std::move(refined), std::move(curves)}, std::move(not_reached)};
 }
@@ -114,31 +140,42 @@ RefinedMap refineToBytes(const GaussianMap<3>& map, std::uintmax_t max_bytes,
                          const std::function<std::uintmax_t(const RefinedMap&)>& bytesOf, const RefineOptions& options,
                          const CurveOptions& curve) {
   constexpr double kPrecision = 1.02;  // of the budget
-  const auto refined = [&](double budget) {
-    RefineOptions with = options;
-    with.budget = budget;
-    return refineWithCurves(map, with, curve);
+  checkCurve(curve);
+  const auto with = [&](double budget) {
+    RefineOptions changed = byAgglomeration(options);
+    changed.budget = budget;
+    return changed;
   };
-  RefinedMap best = refined(1.0);
-  const std::uintmax_t least = bytesOf(best);
-  if (least > max_bytes)
-    throw std::invalid_argument("max_bytes = " + std::to_string(max_bytes) + ": one Gaussian per cell takes " +
-                                std::to_string(least) + " bytes already; take coarser cells");
   std::size_t fewest_cells = map.cellCount(0);
   for (int s = 1; s < map.scales(); ++s) fewest_cells = std::min(fewest_cells, map.cellCount(s));
   const double most = std::max(1.0, static_cast<double>(map.gaussianCount(0)) / std::max(1.0, double(fewest_cells)));
-  double fits = 1.0, too_large = 0.0;  // budgets; 0: none known
-  for (double next = 2.0; fits < most && (too_large == 0.0 || too_large > fits * kPrecision);) {
-    RefinedMap tried = refined(std::min(next, most));
-    if (bytesOf(tried) <= max_bytes) {
-      best = std::move(tried);
-      fits = std::min(next, most);
-    } else {
-      too_large = next;
-    }
-    next = too_large == 0.0 ? 2.0 * fits : std::sqrt(fits * too_large);
+  const auto allowed = static_cast<double>(max_bytes);
+
+  // True curves take longer than all the rest: they are made last, and only for the budget that is chosen.
+  RefinedMap trial{refine<3>(map, with(1.0)), widestCurves(map.scales(), curve)};
+  double fits = 1.0, fits_bytes = static_cast<double>(bytesOf(trial));
+  double too_large = 0.0, too_many_bytes = 0.0;  // 0: none known
+  for (double next = 2.0;
+       fits_bytes <= allowed && fits < most && (too_large == 0.0 || too_large > fits * kPrecision);) {
+    const double budget = std::min(next, most);
+    trial.map = refine<3>(map, with(budget));
+    const auto bytes = static_cast<double>(bytesOf(trial));
+    (bytes <= allowed ? fits : too_large) = budget;
+    (bytes <= allowed ? fits_bytes : too_many_bytes) = bytes;
+    // Between two budgets the bytes rise nearly straight; the bounds of the share make the rest certain.
+    const double share = (allowed - fits_bytes) / (too_many_bytes - fits_bytes);
+    next = too_large == 0.0 ? 2.0 * fits : fits + std::clamp(share, 0.1, 0.9) * (too_large - fits);
   }
-  return best;
+  for (double step = kPrecision; fits > 1.0; fits /= step, step *= step) {  // once, unless the curves are too much
+    RefinedMap best = refineWithCurves(map, with(fits), curve);
+    if (bytesOf(best) <= max_bytes) return best;
+  }
+  RefinedMap one_per_cell = refineWithCurves(map, with(1.0), curve);
+  const std::uintmax_t least = bytesOf(one_per_cell);
+  if (least > max_bytes)
+    throw std::invalid_argument("max_bytes = " + std::to_string(max_bytes) + ": one Gaussian per cell takes " +
+                                std::to_string(least) + " bytes already; take coarser cells");
+  return one_per_cell;
 }
 
 }  // namespace gaussmap

@@ -48,6 +48,10 @@ std::vector<double> coarserAreas(const MapScale<D>& finer, const std::vector<dou
 /// Makes every coarse scale anew from the finer one and lets refineScale(scale, areas) refine it.
 template <int D, typename RefineScale>
 GaussianMap<D> refineScales(const GaussianMap<D>& map, const RefineScale& refineScale) {
+  if (map.isCompressed())
+    throw std::invalid_argument(
+        "the map is compressed: its finest scale is incomplete, so that the coarse ones cannot be "
+        "made anew; refine first, then compress");
   std::vector<MapScale<D>> scales = {map.scale(0)};
   std::vector<double> areas = finestAreas(scales.front());
   for (int finer_scale = 0; finer_scale + 1 < map.scales(); ++finer_scale) {

@@ -23,6 +23,14 @@ struct CellClusters {
   std::vector<int> labels;
 };
 
+/// What refining makes of a coarse scale.
+template <int D>
+struct ScaleCut {
+  std::vector<std::uint32_t> first_gaussian;  // as in MapScale
+  std::vector<Gaussian<D>> gaussians;
+  std::vector<std::uint32_t> parent;  // of each Gaussian of the finer scale
+};
+
 /// One coarse scale fresh from coarsen(), about to be refined.
 template <int D>
 struct CoarseScale {
@@ -64,24 +72,30 @@ struct CoarseScale {
     return most->second - cells();
   }
 
-  /// Replaces the Gaussians of the coarse scale, links the finer ones to them.
-  void replaceGaussians(const std::vector<CellClusters<D>>& clusters) {
-    std::vector<Gaussian<D>> gaussians;
-    coarse.first_gaussian.clear();
+  ScaleCut<D> cutInto(const std::vector<CellClusters<D>>& clusters) const {
+    ScaleCut<D> cut;
+    cut.parent.resize(finer.gaussianCount());
     for (std::size_t cell = 0; cell < clusters.size(); ++cell) {
-      const auto first = static_cast<std::uint32_t>(gaussians.size());
-      coarse.first_gaussian.push_back(first);
+      const auto first = static_cast<std::uint32_t>(cut.gaussians.size());
+      cut.first_gaussian.push_back(first);
       const IndexRange under = gaussiansUnder(cell);
       const auto& [references, labels] = clusters[cell];
       for (std::size_t i = under.first; i < under.last; ++i)
-        finer.parent[i] = first + static_cast<std::uint32_t>(labels.empty() ? 0 : labels[i - under.first]);
+        cut.parent[i] = first + static_cast<std::uint32_t>(labels.empty() ? 0 : labels[i - under.first]);
       if (references.empty())
-        gaussians.push_back(coarse.gaussians[cell]);
+        cut.gaussians.push_back(coarse.gaussians[cell]);
       else
-        gaussians.insert(gaussians.end(), references.begin(), references.end());
+        cut.gaussians.insert(cut.gaussians.end(), references.begin(), references.end());
     }
-    coarse.first_gaussian.push_back(static_cast<std::uint32_t>(gaussians.size()));
-    coarse.gaussians = std::move(gaussians);
+    cut.first_gaussian.push_back(static_cast<std::uint32_t>(cut.gaussians.size()));
+    return cut;
+  }
+  /// Replaces the Gaussians of the coarse scale, links the finer ones to them.
+  void replaceGaussians(const std::vector<CellClusters<D>>& clusters) {
+    ScaleCut<D> cut = cutInto(clusters);
+    coarse.first_gaussian = std::move(cut.first_gaussian);
+    coarse.gaussians = std::move(cut.gaussians);
+    finer.parent = std::move(cut.parent);
   }
 };
 
@@ -97,6 +111,7 @@ class ScaleCuts {
   ScaleCuts(const CoarseScale<D>& scale, const std::vector<double>& areas, const RefineOptions& options);
 
   int scale() const { return scale_.finer_scale + 1; }
+  const std::vector<CellKey<D>>& keys() const { return scale_.coarse.keys; }
   std::size_t extraOf(double multiple) const { return scale_.extraOf(multiple); }
   std::size_t extraAllowed(const RefineOptions& options) const { return scale_.extraAllowed(options); }
   /// The Gaussians that the finer scale allows beyond one a cell.
@@ -104,8 +119,7 @@ class ScaleCuts {
 
   /// The clusters of every cell when `extra` Gaussians are there beyond one a cell.
   std::vector<CellClusters<D>> clusters(std::size_t extra) const;
-  /// The same as a scale without links to others.
-  MapScale<D> cut(std::size_t extra) const;
+  ScaleCut<D> cut(std::size_t extra) const;
 
  private:
   const CoarseScale<D>& scale_;

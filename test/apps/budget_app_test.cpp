@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Budgets and error curves through the real program.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <memory>
-#include <nlohmann/json.hpp>
-
-#include "apps/run_app.h"
-#include "io/temporary_directory.h"
+#include "apps/app_fixture.h"
+#include "gaussmap/io/map_file.h"
+#include "io/map_equality.h"
 
 namespace gaussmap::test {
 namespace {
 
-using Json = nlohmann::json;
-
-class BudgetApps : public testing::Test {
+class BudgetApps : public AppTest {
  protected:
   static void SetUpTestSuite() {
     folder_ = std::make_unique<TemporaryDirectory>();
@@ -24,8 +17,6 @@ class BudgetApps : public testing::Test {
   static void TearDownTestSuite() { folder_.reset(); }
 
   static std::string scene(const std::string& name) { return (folder_->path() / name).string(); }
-  std::string own(const std::string& name) const { return (directory_.path() / name).string(); }
-  static Json infoOf(const std::string& map) { return Json::parse(runApp({"info", map, "--json"}).out); }
 
   /// refine of the unrefined map with some options.
   Outcome refineWith(const std::string& out, std::vector<std::string> options) {
@@ -33,10 +24,9 @@ class BudgetApps : public testing::Test {
     return runApp(options);
   }
 
-  static std::unique_ptr<TemporaryDirectory> folder_;
-  TemporaryDirectory directory_;
+ private:
+  static inline std::unique_ptr<TemporaryDirectory> folder_;
 };
-std::unique_ptr<TemporaryDirectory> BudgetApps::folder_;
 
 TEST_F(BudgetApps, KeepToTheGaussiansAllowedForAllScalesAndForOne) {
   const int cells = infoOf(scene("one.gmap"))["scales"][1]["cells"];
@@ -106,6 +96,49 @@ TEST_F(BudgetApps, StillKnowTheMethodOfThePaper) {
   EXPECT_EQ(infoOf(own("insert.gmap"))["scales"][1]["gaussians"],
             infoOf(own("agglomerate.gmap"))["scales"][1]["gaussians"]);
   EXPECT_NE(contentsOf(own("insert.gmap")), contentsOf(own("agglomerate.gmap")));
+}
+
+TEST_F(BudgetApps, MergeByTheCostAskedFor) {
+  const auto refined = [&](const std::string& name, const std::vector<std::string>& options) {
+    const Outcome outcome = refineWith(name, options);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return loadMap<3>(own(name));
+  };
+  const GaussianMapOctree usual = refined("usual.gmap", {}), volume = refined("volume.gmap", {"--cost", "volume"}),
+                          runnalls = refined("runnalls.gmap", {"--cost", "runnalls"}),
+                          area = refined("area.gmap", {"--cost", "volume-area"});
+  expectSameMap<3>(volume, usual);
+  EXPECT_FALSE(sameMap<3>(runnalls, usual));
+  EXPECT_FALSE(sameMap<3>(area, usual));
+  EXPECT_FALSE(sameMap<3>(area, runnalls));
+  EXPECT_EQ(runnalls.gaussianCount(1), usual.gaussianCount(1));
+  EXPECT_EQ(infoOf(own("runnalls.gmap"))["metadata"]["history"][1]["cost"], "runnalls");
+  succeed({"pcd2map", scene("scans"), "-o", own("direct.gmap"), "--cost", "runnalls"});
+  expectSameMap<3>(loadMap<3>(own("direct.gmap")), runnalls);
+}
+
+TEST_F(BudgetApps, InsertIntoTheCellsAskedFor) {
+  for (const std::string cells : {"error", "volume"})
+    ASSERT_EQ(refineWith(cells, {"--method", "insert", "--cells", cells, "--budget", "2"}).code, 0);
+  ASSERT_EQ(refineWith("usual", {"--method", "insert", "--budget", "2"}).code, 0);
+  expectSameMap<3>(loadMap<3>(own("error")), loadMap<3>(own("usual")));
+  EXPECT_FALSE(sameMap<3>(loadMap<3>(own("volume")), loadMap<3>(own("usual"))));
+  EXPECT_EQ(infoOf(own("volume"))["metadata"]["history"][1]["cells"], "volume");
+}
+
+TEST_F(BudgetApps, RefuseOptionsOfTheOtherMethod) {
+  for (const std::string command : {"refine", "pcd2map"}) {
+    const std::string input = scene(command == "refine" ? "one.gmap" : "scans");
+    const auto refuse = [&](const std::string& word, std::vector<std::string> options) {
+      options.insert(options.begin(), {command, input, "-o", own("x.gmap")});
+      expectUsageError(word, options);
+    };
+    refuse("--cost: for --method agglomerate only", {"--method", "insert", "--cost", "volume"});
+    refuse("--cells: for --method insert only", {"--cells", "error"});
+    refuse("--cells: for --method insert only", {"--method", "agglomerate", "--cells", "volume"});
+    refuse("--cost", {"--cost", "area"});
+    refuse("--cells", {"--method", "insert", "--cells", "weight"});
+  }
 }
 
 }  // namespace

@@ -167,6 +167,23 @@ TEST_F(HausdorffApp, ComparesAMapWithAMesh) {
   }
 }
 
+TEST_F(HausdorffApp, BoundsSamplesByTheMembersOfTheirGaussiansOrAsInThePaperByCells) {
+  const GaussianMap<3> map = loadMap<3>(in("a.gmap"));
+  const auto found = [&](std::vector<std::string> options) -> Json {
+    options.insert(options.begin(), {in("a.gmap"), in("a.pcd"), "--scale", "1", "--samples", "4000"});
+    return json(options)["scales"][0]["all"];
+  };
+  SampleOptions in_cells = samples(4000);
+  in_cells.bounds = SampleBounds::Cell;
+  const HausdorffResult cell = evaluateMap(map, 1, a_, in_cells).all,
+                        members = evaluateMap(map, 1, a_, samples(4000)).all;
+  expectResult(found({"--samples-in", "cell"}), cell);
+  expectResult(found({"--samples-in", "members"}), members);
+  expectResult(found({}), members);
+  EXPECT_NE(members.forward.mean, cell.forward.mean);
+  expectFailure(2, "--samples-in", {in("a.gmap"), in("a.pcd"), "--samples-in", "box"});
+}
+
 TEST_F(HausdorffApp, ComparesAMapWithAMap) {
   const GaussianMap<3> map = loadMap<3>(in("a.gmap")), other = loadMap<3>(in("b.gmap"));
   const Json scales = json({in("a.gmap"), in("b.gmap"), "--samples", "4000"})["scales"];

@@ -7,11 +7,11 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "io/file_contents.h"
 
 extern char** environ;
 
@@ -22,11 +22,6 @@ struct Outcome {
   int code = -1;  ///< exit code, -1 if a signal ended it
   std::string out, err;
 };
-
-inline std::string contentsOf(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 /// Runs gaussmap as a shell would; stdout and stderr go through files, so that no full pipe can stop it.
 inline Outcome runApp(const std::vector<std::string>& arguments, const std::string& out_path = "") {

@@ -36,6 +36,36 @@ TEXT
   "$here/whole_command.sh" "$build"
   cat <<'TEXT'
 
+## Hausdorff distance of two clouds
+
+`test/benchmark/hausdorff.sh BUILD`: two binary PCD files of a million points each; whole commands on all processors
+(PCL uses one). The script stops if the maxima differ by more than PCL's floats and printed decimals.
+
+TEXT
+  "$here/hausdorff.sh" "$build"
+  cat <<'TEXT'
+
+## Refinement: time
+
+`gaussmap_refinement_speed`: the simulated street to 3.4 Gaussians per cell, one thread, shortest of five runs. Clustering
+alone stands beside scalar code with Eigen objects, logarithms and a cheapest partner for each cluster.
+
+TEXT
+  "$build/test/benchmark/gaussmap_refinement_speed"
+  cat <<'TEXT'
+
+## Refinement: accuracy at equal numbers of Gaussians
+
+`gaussmap_refinement_table --data DATA`: distances [m] from samples of the coarsest scale (100,000 by volume, at least 30
+a Gaussian, within the box of its finest cells) to the truth, and the mean the other way; means of three seeds, the worst
+in brackets. 'Paper's method' is Algorithm 2 as printed, 'parent seed' puts the new cluster at the same datum, but with
+the covariance of the cluster that it leaves. 'Uniform grid' has one Gaussian in each of as many cells. The plain street
+has the same kinds of things as the simulated street, but fewer trees and cars and no relief on the fronts.
+
+TEXT
+  "$build/test/benchmark/gaussmap_refinement_table" --data "$data"
+  cat <<'TEXT'
+
 ## Maps of real scans
 
 `test/benchmark/datasets.sh BUILD/apps/gaussmap BUILD/test/benchmark/gaussmap_reference DATA`: distances [m, feet for

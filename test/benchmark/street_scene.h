@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "gaussmap/io/pose.h"
@@ -11,8 +12,9 @@
 namespace gaussmap::benchmark_input {
 
 /// A straight street, 200 m long: ground, two building fronts, poles every 10 m, seen by a 64-ring lidar every 2 m.
-/// Points in the map frame, in packet order (all rings of a column, then the next column).
-inline std::vector<Vector<3>> streetPoints(std::size_t count) {
+/// Points in the map frame, in packet order (all rings of a column, then the next column). The drive begins again after
+/// 80 scans, with other noise.
+inline std::vector<Vector<3>> streetPoints(std::size_t count, std::uint64_t first_scan = 0) {
   Scene scene;
   scene.rectangles.push_back({{-100, -15, 0}, {200, 0, 0}, {0, 30, 0}});
   for (const double y : {-15.0, 15.0}) scene.rectangles.push_back({{-100, y, 0}, {200, 0, 0}, {0, 0, 12}});
@@ -28,7 +30,7 @@ inline std::vector<Vector<3>> streetPoints(std::size_t count) {
   lidar.max_range = 100.0;
   std::vector<Vector<3>> points;
   points.reserve(count + std::size_t{64} * 1800);
-  for (std::uint64_t step = 0; points.size() < count; ++step) {
+  for (std::uint64_t step = first_scan; points.size() < count; ++step) {
     Pose pose = turn;
     pose.translation = turn.rotation * Eigen::Vector3d(-80.0 + 2.0 * static_cast<double>(step % 80), 0.3, 1.8);
     for (const Eigen::Vector3d& point : simulateScan(scene, pose, lidar, step).points)

@@ -120,7 +120,8 @@ TEST(KLProblem, GivesTheDivergencesOfThePaper) {  // what the swap loop compares
   KLPartition<3> partition;
   partition.references = references;
   for (Gaussian<3>& w : partition.references) w.mean -= problem.centre();
-  problem.assign(partition.references, partition.labels);
+  problem.assign(partition.references, partition.assignment);
+  partition.labels = partition.assignment.labels;
   const Eigen::VectorXd own = problem.ownDistances(partition);
   for (std::size_t j = 0; j < data.size(); ++j)
     EXPECT_NEAR(own(Eigen::Index(j)), klDivergence(data[j], references[std::size_t(partition.labels[j])]),

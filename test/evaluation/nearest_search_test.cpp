@@ -129,12 +129,26 @@ TEST(NearestSearch, FindsTheMaximumAtTheCornerOfABox) {  // where the bound of a
   }
 }
 
-// No clock here: clouds on which a quadratic search would take minutes, where ctest stops a test that never ends.
+/// Pairs of points looked at per query, a count instead of a clock: on these clouds a bad search looks at thousands.
+double comparisonsEach(const Points& from, const Points& to) {
+  std::size_t comparisons = 0;
+  nearestDistances(PointTree(from), PointTree(to), 0, &comparisons);
+  return double(comparisons) / double(from.size());
+}
+
+double comparisonsEachForTheMaximum(const Points& from, const Points& to) {
+  std::size_t comparisons = 0;
+  largestNearestDistance(PointTree(from), PointTree(to), 1, &comparisons);
+  return double(comparisons) / double(from.size());
+}
+
 TEST(NearestSearch, EndsOnHeapsOfEqualPoints) {
   const Points heap(300000, Vector<3>(1, 2, 3)), other(300000, Vector<3>(1, 2, 4));
   EXPECT_EQ(largest(nearestDistances(heap, other)), 1.0);
   EXPECT_EQ(hausdorffMaxima(heap, other).backward, 1.0);
   EXPECT_EQ(hausdorffMaxima(heap, heap).backward, 0.0);
+  EXPECT_LE(comparisonsEach(heap, other), 2.0);
+  EXPECT_LE(comparisonsEachForTheMaximum(heap, other), 0.1);
 }
 
 TEST(NearestSearch, EndsOnAHeapOfAMicrometreBesideAnOutlier) {
@@ -144,6 +158,8 @@ TEST(NearestSearch, EndsOnAHeapOfAMicrometreBesideAnOutlier) {
   Points other = heap;
   for (Vector<3>& point : other) point.y() += 1e-9;
   EXPECT_LT(largest(nearestDistances(heap, other)), 2e-9);
+  EXPECT_LT(comparisonsEach(heap, other), 60.0);
+  EXPECT_LT(comparisonsEachForTheMaximum(heap, other), 60.0);
 }
 
 TEST(NearestSearch, EndsForPointsThatSeeAWallFromFarAway) {  // each group of them sees half the wall as near
@@ -151,6 +167,20 @@ TEST(NearestSearch, EndsForPointsThatSeeAWallFromFarAway) {  // each group of th
   for (Vector<3>& point : wall) point = Vector<3>(0, 20 * point.y(), 20 * point.z());
   for (Vector<3>& point : far) point = Vector<3>(100 + 50 * point.x(), 20 * point.y(), 20 * point.z());
   EXPECT_NEAR(largest(nearestDistances(far, wall)), 150, 0.1);
+  EXPECT_LT(comparisonsEach(far, wall), 1300.0);
+  EXPECT_LT(comparisonsEachForTheMaximum(far, wall), 20.0);
+}
+
+TEST(NearestSearch, LooksAtFewPairsOnALineAndWherePointsRepeat) {
+  Points line = cube(100000, 30), other = cube(100000, 31), repeated;
+  for (Points* points : {&line, &other})
+    for (Vector<3>& point : *points) point = point.x() * Vector<3>(1, 2, -1);
+  EXPECT_LT(comparisonsEach(line, other), 45.0);
+  EXPECT_LT(comparisonsEachForTheMaximum(line, other), 45.0);
+  const Points few = cube(1000, 32), many = cube(100000, 33);
+  for (std::size_t i = 0; i < many.size(); ++i) repeated.push_back(few[i % few.size()]);
+  EXPECT_LT(comparisonsEach(many, repeated), 20.0);
+  EXPECT_LT(comparisonsEach(repeated, many), 50.0);
 }
 
 TEST(HausdorffMaxima, RefuseEmptySetsAndNameThePointThatIsNotFinite) {

@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <numeric>
 
 #include "gaussmap/gaussian/random.h"
 #include "gaussmap/mapping/build.h"
+#include "gaussmap/mapping/compress.h"
+#include "gaussmap/mapping/refine.h"
 
 namespace gaussmap {
 namespace {
@@ -64,6 +67,86 @@ TEST(SampleMap, KeepsSamplesInTheirCellsIn3D) {
 }
 TEST(SampleMap, KeepsSamplesInTheirCellsTenThousandKilometresAway) {
   expectSamplesInTheirCells<3>(-1e7);
+}
+
+/// Keys of the finest cells under every Gaussian of a scale: the smallest and the largest on each axis.
+template <int D>
+std::vector<std::pair<CellKey<D>, CellKey<D>>> memberKeys(const GaussianMap<D>& map, int scale) {
+  constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
+  CellKey<D> none_low, none_high;
+  none_low.fill(kMost);
+  none_high.fill(-kMost);
+  std::vector<std::pair<CellKey<D>, CellKey<D>>> ranges(map.gaussianCount(scale), {none_low, none_high});
+  for (std::size_t i = 0; i < map.gaussianCount(0); ++i) {
+    std::size_t cluster = i;
+    for (int s = 0; s < scale; ++s) cluster = map.parentOf(cluster, s);
+    const CellKey<D>& key = map.scale(0).keys[map.cellOf(i, 0)];
+    for (std::size_t axis = 0; axis < D; ++axis) {
+      ranges[cluster].first[axis] = std::min(ranges[cluster].first[axis], key[axis]);
+      ranges[cluster].second[axis] = std::max(ranges[cluster].second[axis], key[axis]);
+    }
+  }
+  return ranges;
+}
+
+/// How many samples of a scale lie outside the box of their Gaussian's finest cells.
+template <int D>
+std::size_t samplesOutsideMembers(const GaussianMap<D>& map, int scale, const MapSamples<D>& samples) {
+  const auto ranges = memberKeys<D>(map, scale);
+  std::size_t outside = 0;
+  for (std::size_t i = 0; i < samples.points.size(); ++i) {
+    const CellKey<D> key = map.grid().keyOf(samples.points[i]);
+    const auto& [low, high] = ranges[samples.gaussian[i]];
+    bool inside = true;
+    for (std::size_t axis = 0; axis < D; ++axis) inside &= low[axis] <= key[axis] && key[axis] <= high[axis];
+    outside += inside ? 0 : 1;
+  }
+  return outside;
+}
+
+template <int D>
+void expectSamplesAmongTheMembers(double far) {
+  const GaussianMap<D> map = refine<D>(randomMap<D>(far, 300));
+  SampleOptions in_cells;
+  in_cells.bounds = SampleBounds::Cell;
+  for (int scale = 1; scale < map.scales(); ++scale) {
+    const MapSamples<D> samples = sampleMap(map, scale);
+    EXPECT_GT(samples.points.size(), 99 * (samples.points.size() + samples.unplaced) / 100);
+    EXPECT_EQ(samplesOutsideMembers<D>(map, scale, samples), 0u) << "scale " << scale;
+    EXPECT_GT(samplesOutsideMembers<D>(map, scale, sampleMap(map, scale, in_cells)), 100u) << "scale " << scale;
+  }
+}
+TEST(SampleMap, KeepsSamplesAmongTheirMembersIn2D) {
+  expectSamplesAmongTheMembers<2>(0.0);
+}
+TEST(SampleMap, KeepsSamplesAmongTheirMembersIn3D) {
+  expectSamplesAmongTheMembers<3>(0.0);
+}
+TEST(SampleMap, KeepsSamplesAmongTheirMembersTenThousandKilometresAway) {
+  expectSamplesAmongTheMembers<3>(-1e7);
+}
+
+TEST(SampleMap, HasTheCellsAsBoundsAtTheFinestScale) {
+  const GaussianMap<3> map = randomMap<3>();
+  SampleOptions options;
+  options.bounds = SampleBounds::Cell;
+  EXPECT_TRUE(equalBytes(sampleMap(map, 0), sampleMap(map, 0, options)));
+  EXPECT_FALSE(equalBytes(sampleMap(map, 1), sampleMap(map, 1, options)));
+}
+
+TEST(SampleMap, FillsTheCellWhereTheDetailWasDeleted) {
+  Random random(9);
+  std::vector<Vector<3>> ball;  // in the middle of the 10 m cell around (5, 5, 5), as wide as a Gaussian fits in
+  for (int i = 0; i < 3000; ++i)
+    ball.push_back(Vector<3>::Constant(5.0) + 1.2 * Vector<3>(random.normal(), random.normal(), random.normal()));
+  const GaussianMap<3> map = build<3>(ball, MapOptions{1.0, 10, 2, 0.01});
+  const GaussianMap<3> compressed = compress(map, 5.0);
+  ASSERT_TRUE(compressed.isCompressed());
+  SampleOptions in_cells;
+  in_cells.bounds = SampleBounds::Cell;
+  EXPECT_TRUE(equalBytes(sampleMap(compressed, 1), sampleMap(map, 1, in_cells)));
+  EXPECT_FALSE(equalBytes(sampleMap(compressed, 1), sampleMap(map, 1)));
+  EXPECT_TRUE(sampleMap(compressed, 0).points.empty());
 }
 
 TEST(SampleMap, GivesTheSameBytesWithAnyNumberOfThreads) {

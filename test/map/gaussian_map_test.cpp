@@ -148,6 +148,55 @@ TEST(GaussianMap, OfOnePointHasOneGaussianAtEveryScale) {
   }
 }
 
+/// Two coarse cells, with one finest cell under the first and two under the second.
+std::vector<MapScale<3>> twoCoarseCells(const MapOptions& options) {
+  const GaussianMapOctree map = build<3>({{0.05, 0, 0}, {1.05, 0, 0}, {1.55, 0, 0}}, options);
+  return {map.scale(0), map.scale(1)};
+}
+
+TEST(GaussianMap, MayHaveCoarseCellsThatStandAlone) {
+  const MapOptions options{0.1, 10, 2, 0.0};
+  std::vector<MapScale<3>> scales = twoCoarseCells(options);
+  scales[0].keys.resize(1);
+  scales[0].moments.resize(1);
+  scales[0].parent.resize(1);
+  scales[1].first_child = {0, 1, 1};
+  const GaussianMapOctree map(options, scales);
+  EXPECT_TRUE(map.isCompressed());
+  EXPECT_FALSE(map.canGrow());
+  EXPECT_EQ(map.weight(0), 1.0);
+  EXPECT_EQ(map.weight(1), 3.0);
+  EXPECT_FALSE(map.isLeaf(0, 1));
+  EXPECT_TRUE(map.isLeaf(1, 1));
+  EXPECT_TRUE(map.isLeaf(0, 0));
+  EXPECT_TRUE(map.childCells(1, 1).empty());
+  EXPECT_TRUE(map.gaussiansUnder(1, 1).empty());
+  EXPECT_TRUE(map.childrenOf(1, 1).empty());
+  EXPECT_EQ(map.find({0, 0, 0}, 0), 0u);
+  EXPECT_FALSE(map.find({10, 0, 0}, 0));
+  EXPECT_EQ(map.find({1, 0, 0}, 1), 1u);
+}
+
+TEST(GaussianMap, MayHaveNothingButItsCoarsestScale) {
+  const MapOptions options{0.1, 10, 2, 0.0};
+  std::vector<MapScale<3>> scales = twoCoarseCells(options);
+  scales[0] = {};
+  scales[1].first_child = {0, 0, 0};
+  const GaussianMapOctree map(options, scales);
+  EXPECT_FALSE(map.empty());
+  EXPECT_FALSE(map.canGrow());
+  EXPECT_TRUE(map.gaussiansUnder(0, 1).empty());
+  EXPECT_EQ(map.weight(0), 0.0);
+}
+
+TEST(GaussianMap, HasNoFinerCellWithoutACoarseOne) {
+  const MapOptions options{0.1, 10, 2, 0.0};
+  std::vector<MapScale<3>> scales = twoCoarseCells(options);
+  scales[1] = {};
+  scales[1].first_child = {0};
+  EXPECT_THROW(GaussianMapOctree(options, scales), std::invalid_argument);
+}
+
 TEST(GaussianMap, RefusesScalesThatDoNotFitTogether) {
   const MapOptions options{0.1, 10, 2, 0.0};
   const GaussianMapOctree good = build<3>(randomCloud<3>(500, 17), options);
@@ -166,6 +215,8 @@ TEST(GaussianMap, RefusesScalesThatDoNotFitTogether) {
   expectRefused([](auto& s) { s[0].parent[0] = 100000; });
   expectRefused([](auto& s) { s[0].parent.clear(); });
   expectRefused([](auto& s) { s[1].first_child[1] = s[1].first_child[0]; });
+  expectRefused([](auto& s) { std::swap(s[1].first_child[1], s[1].first_child[2]); });
+  expectRefused([](auto& s) { s[1].first_child.back() -= 1; });
   expectRefused([](auto& s) { s[1].gaussians[0].weight = 0.0; });
   expectRefused([](auto& s) { s[1].gaussians[0].mean.x() = 0.6; });
   expectRefused([](auto& s) { s[1].gaussians[0].mean.z() = std::nan(""); });

@@ -3,10 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include "gaussmap/evaluation/hausdorff.h"
+#include "gaussmap/evaluation/nearest_distances.h"
+#include "gaussmap/evaluation/sample_map.h"
 #include "gaussmap/io/map_file.h"
 #include "gaussmap/mapping/build.h"
 #include "io/temporary_directory.h"
 #include "map/random_clouds.h"
+#include "mapping/room.h"
 
 namespace gaussmap {
 namespace {
@@ -48,6 +52,28 @@ TEST(ErrorCurve, StartsAtOnePerCellRisesInGaussiansAndFallsInError) {
     for (std::size_t i = 1; i < curve.points.size(); ++i)
       EXPECT_GT(curve.points[i].gaussians, curve.points[i - 1].gaussians);
     EXPECT_LT(curve.points.back().mean, 0.7 * curve.points.front().mean);
+  }
+}
+
+TEST(ErrorCurve, MeasuresSamplesAmongTheMembersOfEachGaussian) {
+  Random random(59);
+  const GaussianMapOctree map = build<3>(roomPoints(random, 20000), {0.1, 5, 3, 0.0});
+  CurveOptions curve;
+  curve.multiples = {3.0};
+  const RefinedMap refined = refineWithCurves(map, {}, curve);  // to three times the cells too
+  SampleOptions data{curve.data, 1, SampleShare::Mass, curve.seed};
+  const std::vector<Vector<3>> finest = sampleMap(map, 0, data).points;
+  for (int s = 1; s < 3; ++s) {
+    const ErrorPoint& point = refined.curves[static_cast<std::size_t>(s) - 1].points.front();
+    ASSERT_EQ(point.gaussians, refined.map.gaussianCount(s));
+    SampleOptions samples{curve.samples, 1, SampleShare::Volume, 7};  // other samples of the same
+    const auto error = [&] { return summarise(nearestDistances(sampleMap(refined.map, s, samples).points, finest)); };
+    EXPECT_NEAR(point.mean, error().mean, 0.02 * point.mean) << "scale " << s;
+    EXPECT_NEAR(point.q95, error().q95, 0.03 * point.q95) << "scale " << s;
+    samples.bounds = SampleBounds::Cell;
+    if (s == 2) {
+      EXPECT_GT(error().q95, 1.04 * point.q95);
+    }
   }
 }
 
@@ -129,6 +155,38 @@ TEST(MaxBytes, AreNeverExceededAndNearlyUsed) {
     EXPECT_GE(bytesOf(refined) + 25000, most);
   }
   EXPECT_THROW(refineToBytes(map, least / 2, bytesOf, {}, quick()), std::invalid_argument);
+}
+
+TEST(MaxBytes, ComeWithTheCurvesOfTheMapItself) {
+  const GaussianMapOctree map = cloudMap(57);
+  const auto bytesOf = [](const RefinedMap& refined) { return savedSize<3>(refined.map); };
+  const RefinedMap refined = refineToBytes(map, savedSize<3>(map) + 50000, bytesOf, {}, quick());
+  RefineOptions same;
+  for (int s = 1; s < 3; ++s) same.max_gaussians[s] = refined.map.gaussianCount(s);
+  const RefinedMap expected = refineWithCurves(map, same, quick());
+  expectEqualScales(refined.map, expected.map);
+  for (std::size_t c = 0; c < 2; ++c) {
+    ASSERT_EQ(refined.curves[c].points.size(), expected.curves[c].points.size());
+    for (std::size_t i = 0; i < expected.curves[c].points.size(); ++i)
+      EXPECT_EQ(refined.curves[c].points[i].mean, expected.curves[c].points[i].mean);
+  }
+}
+
+TEST(MaxBytes, AreKeptWhereOnlyTheCurvesExceedThem) {
+  const GaussianMapOctree map = cloudMap(57);
+  for (const std::size_t penalty : {std::size_t{10}, std::size_t{100}, std::size_t{1000000}}) {
+    double trial_curve = 0.0;  // of the budgets tried out, whose curves nobody computes
+    const auto bytesOf = [&](const RefinedMap& refined) -> std::uintmax_t {
+      const double curve = refined.curves.back().points.back().mean;
+      if (trial_curve == 0.0) trial_curve = curve;
+      const bool costs_more = curve != trial_curve && refined.map.gaussianCount(1) > map.cellCount(1);
+      return refined.map.gaussianCount(1) + refined.map.gaussianCount(2) + (costs_more ? penalty : 0);
+    };
+    const std::uintmax_t most = 3 * (map.cellCount(1) + map.cellCount(2));
+    const RefinedMap refined = refineToBytes(map, most, bytesOf, {}, quick());
+    EXPECT_LE(bytesOf(refined), most) << penalty;
+    EXPECT_EQ(refined.map.gaussianCount(1) == map.cellCount(1), penalty == 1000000) << penalty;
+  }
 }
 
 TEST(SavedSize, IsTheSizeOfTheFile) {

@@ -62,11 +62,11 @@ HausdorffMaxima hausdorffMaxima(const std::vector<Vector<3>>& a, const std::vect
 /// How far one scale of a map is from a reference; forward = from the map's samples to the reference (what the map
 /// invents), backward = from the reference to the samples (what the map misses).
 struct MapHausdorff {
-  HausdorffResult all;               ///< all samples inside their cells, as the paper has it
+  HausdorffResult all;               ///< all samples inside their bounds (SampleBounds)
   HausdorffResult within_two_sigma;  ///< only the samples at most 2 sigma from their means; count 0 if none is
-  std::size_t gaussians = 0;         ///< of the scale
+  std::size_t gaussians = 0;         ///< of the scale, or leaves()
   std::size_t samples = 0;           ///< placed; `within_two_sigma.forward.count` of them are near their means
-  std::size_t unplaced = 0;          ///< samples that found no place in their cells, see sampleMap()
+  std::size_t unplaced = 0;          ///< samples that found no place in their bounds, see sampleMap()
 };
 
 /// What maps and clouds are compared with, sorted once for any number of comparisons. A value; copies are cheap.
@@ -89,13 +89,18 @@ class Reference {
                           PointDistances* distances = nullptr) const;
 
   /// Samples a scale of a map and compares the samples, Yguel 2009 sec. 6. Note what the maximum of `all.forward` is:
-  /// a Gaussian has no end but its cell's, so it grows with the number of samples (the paper's Hausdorff distance does
+  /// a Gaussian has no end but its bounds', so it grows with the number of samples (the paper's Hausdorff distance does
   /// too). Compare maps at equal options, or by q99, or by `within_two_sigma`, whose samples fill an ellipsoid.
   /// Throws std::invalid_argument if the scale is empty, std::out_of_range for a scale that the map does not have.
   MapHausdorff compare(const GaussianMap<3>& map, int scale, const SampleOptions& options = {},
                        PointDistances* distances = nullptr) const;
+  /// The same for the map at its finest, leaves(): a compressed map as a whole.
+  MapHausdorff compareLeaves(const GaussianMap<3>& map, const SampleOptions& options = {},
+                             PointDistances* distances = nullptr) const;
 
  private:
+  MapHausdorff compareSamples(const MapSamples<3>& samples, int threads, PointDistances* distances) const;
+
   struct Parts;
   std::shared_ptr<const Parts> parts_;
 };

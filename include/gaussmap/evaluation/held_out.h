@@ -16,6 +16,10 @@ namespace gaussmap {
 template <int D>
 std::vector<double> logLikelihoods(const GaussianMap<D>& map, int scale, const std::vector<Vector<D>>& points,
                                    int threads = 0);
+/// The same with the map at its finest, leaves(): of every scale the coarse cells without detail under them among the
+/// point's cell and those next to it; weights divided by that of the whole map.
+template <int D>
+std::vector<double> logLikelihoods(const GaussianMap<D>& map, const std::vector<Vector<D>>& points, int threads = 0);
 
 struct HeldOutOptions {
   double background = 0.01;  ///< epsilon, share of the points that may come from anywhere, in (0, 1)
@@ -41,6 +45,10 @@ struct HeldOutResult {
 /// there are no points or an option makes no sense (naming it).
 template <int D>
 HeldOutResult heldOutLogLikelihood(const GaussianMap<D>& map, int scale, const std::vector<Vector<D>>& points,
+                                   const HeldOutOptions& options = {});
+/// The same with the map at its finest. A point lies in no cell if none that it lies in is a leaf.
+template <int D>
+HeldOutResult heldOutLogLikelihood(const GaussianMap<D>& map, const std::vector<Vector<D>>& points,
                                    const HeldOutOptions& options = {});
 
 }  // namespace gaussmap

@@ -39,8 +39,9 @@ GaussianRecords toRecords(const GaussianMap<3>& map, std::optional<int> scale = 
 
 /// The map that such records describe. The grid follows from cell sides and scales; a finer Gaussian's parent is the
 /// cluster of the cell above that is nearest under the KL divergence. Where floats have cost a covariance its
-/// positive definiteness, the eigenvalues are lifted to 1e-6 of the largest. One scale alone, whichever, becomes the
-/// finest scale of a map of one scale. Throws std::invalid_argument, saying what, if they describe no map.
+/// positive definiteness, the eigenvalues are lifted to 1e-6 of the largest. Coarse cells without finer ones make a
+/// compressed map; one scale alone, whichever, becomes the finest scale of a map of one scale. Throws
+/// std::invalid_argument, saying what, if they describe no map.
 GaussianMap<3> fromRecords(const GaussianRecords& records);
 
 struct ExportOptions {

@@ -14,6 +14,9 @@ namespace gaussmap {
 /// not exist or a directory has no such file.
 std::vector<std::filesystem::path> listScans(const std::vector<std::filesystem::path>& inputs);
 
+/// True if listScans() takes a file of this name in a directory for a scan.
+bool isScanName(const std::filesystem::path& name);
+
 /// True if a comes before b as people count: numbers in names by their value, scan2 before scan10.
 bool naturalLess(const std::string& a, const std::string& b);
 

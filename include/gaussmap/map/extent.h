@@ -14,7 +14,7 @@ struct Box {
   Vector<D> high;
 };
 
-/// The box of the occupied cells of the finest scale; nothing for an empty map.
+/// The box of the occupied cells, each at the finest scale that the map has there; nothing for an empty map.
 template <int D>
 std::optional<Box<D>> extentOf(const GaussianMap<D>& map);
 

@@ -26,7 +26,7 @@ template <int D>
 struct MapScale {
   std::vector<CellKey<D>> keys;               ///< n cells
   std::vector<std::uint32_t> first_child;     ///< n + 1 indices of cells of the finer scale; empty at the finest
-  std::vector<CellMoments<D>> moments;        ///< n at the finest scale of a map that can grow, else empty
+  std::vector<CellMoments<D>> moments;        ///< n, or empty: finest scale only, what its Gaussians are made from
   std::vector<std::uint32_t> first_gaussian;  ///< n + 1, or empty: cell i holds Gaussian i
   std::vector<Gaussian<D>> gaussians;         ///< mean about the centre of the cell; empty where there are moments
   std::vector<std::uint32_t> parent;          ///< per Gaussian, its cluster at the coarser scale; empty at the coarsest
@@ -36,6 +36,7 @@ struct MapScale {
 
 /// A multi-scale map: at every scale a sparse grid of cells with Gaussians in them, one per cell at the finest
 /// scale, one or more at the coarser ones, linked to the finer Gaussians that they stand for (Yguel 2009, sec. 3, 5).
+/// A coarse cell may stand alone, without cells under it: compress() deletes detail where it is not needed.
 /// A value: made by build(), improved by refine(), kept by saveMap(). Reading from several threads is safe.
 template <int D>
 class GaussianMap {
@@ -51,13 +52,17 @@ class GaussianMap {
   const MapOptions& options() const { return grid_.options(); }
   int scales() const { return grid_.scales(); }
   const MapScale<D>& scale(int s) const { return scales_[static_cast<std::size_t>(s)]; }
-  bool empty() const { return scales_.front().keys.empty(); }
-  /// True when the finest scale holds exact moments: such a map can take more points and merges exactly.
-  bool canGrow() const { return empty() || !scales_.front().moments.empty(); }
+  bool empty() const { return scales_.back().keys.empty(); }
+  /// True when some coarse cell has no cells under it: the finer scales do not cover the whole map.
+  bool isCompressed() const { return compressed_; }
+  /// True when the finest scale holds the exact moments of all points: such a map can take more of them and merges
+  /// exactly.
+  bool canGrow() const { return empty() || (!isCompressed() && !scales_.front().moments.empty()); }
 
   std::size_t cellCount(int s) const { return scale(s).keys.size(); }
   std::size_t gaussianCount(int s) const { return scale(s).gaussianCount(); }
-  /// Sum of the weights of a scale: the number of points counted, the same at every scale.
+  /// Sum of the weights of a scale: the number of points under its cells. The same at every scale, unless the map is
+  /// compressed: then it is less where cells are missing, and that of all points at the coarsest scale only.
   double weight(int s) const { return weights_[static_cast<std::size_t>(s)]; }
 
   /// Index of a cell, or nothing if it is not occupied. Logarithmic in the children of a cell.
@@ -66,8 +71,10 @@ class GaussianMap {
   IndexRange gaussiansOf(std::size_t cell, int s) const;
   /// The cell that Gaussian `index` of scale s lies in.
   std::size_t cellOf(std::size_t index, int s) const;
-  /// The cells of scale s - 1 under a cell of scale s >= 1.
+  /// The cells of scale s - 1 under a cell of scale s >= 1; an empty range if there are none.
   IndexRange childCells(std::size_t cell, int s) const;
+  /// True if the map has nothing finer than this cell: at the finest scale, and where a compressed map ends above it.
+  bool isLeaf(std::size_t cell, int s) const { return s == 0 || childCells(cell, s).empty(); }
   /// All Gaussians of scale s - 1 in the cells under a cell of scale s >= 1: G(phi(c)) of the paper.
   IndexRange gaussiansUnder(std::size_t cell, int s) const;
 
@@ -85,6 +92,7 @@ class GaussianMap {
   Grid<D> grid_;
   std::vector<MapScale<D>> scales_;  // finest first
   std::vector<double> weights_;      // of each scale
+  bool compressed_ = false;
 };
 
 using GaussianMapOctree = GaussianMap<3>;

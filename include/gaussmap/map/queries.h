@@ -13,9 +13,13 @@ namespace gaussmap {
 /// Throws std::out_of_range for a point that has no cell.
 template <int D>
 double logLikelihood(const GaussianMap<D>& map, const Vector<D>& point, int scale);
+/// The same with the map at its finest, leaves(): of every scale the coarse cells without detail under them among the
+/// point's cell and those next to it; weights divided by that of the whole map.
+template <int D>
+double logLikelihood(const GaussianMap<D>& map, const Vector<D>& point);
 
 /// The Gaussian of a scale whose mean is nearest to a point (Euclidean, ties to the smaller index), however far;
-/// nothing in an empty map. Throws std::out_of_range for a point that has no cell.
+/// nothing if the scale is empty. Throws std::out_of_range for a point that has no cell.
 template <int D>
 struct Nearest {
   std::size_t index;  ///< Gaussian of the scale asked for

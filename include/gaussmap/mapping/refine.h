@@ -53,7 +53,7 @@ struct RefineOptions {
 ///
 /// Every cluster is the moment match (weights = numbers of points) of the finer Gaussians whose `parent` it is, so that
 /// the total weight of a scale stays the number of points. The finest scale stays as it is.
-/// Throws std::invalid_argument, naming the option.
+/// Throws std::invalid_argument, naming the option, and for a compressed map.
 template <int D>
 GaussianMap<D> refine(GaussianMap<D> map, const RefineOptions& options = {});
 

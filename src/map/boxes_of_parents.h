@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "gaussmap/map/extent.h"
+
+namespace gaussmap {
+
+/// The box around the boxes of each of `count` clusters' members; parent[i] = the cluster of box i. A cluster without
+/// members has no box: its `low` is infinite.
+template <int D>
+std::vector<Box<D>> boxesOfParents(const std::vector<Box<D>>& members, const std::vector<std::uint32_t>& parent,
+                                   std::size_t count);
+
+}  // namespace gaussmap

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "gaussmap/map/grid.h"
+
+namespace gaussmap {
+
+/// MapScale::first_child of the cells of scale s: which cells of scale s - 1 lie under each of them, none under some
+/// perhaps. Both in key order. Throws std::invalid_argument, naming it, if a parent is missing.
+template <int D>
+std::vector<std::uint32_t> linkCells(const std::vector<CellKey<D>>& finer, const std::vector<CellKey<D>>& coarse,
+                                     const Grid<D>& grid, int s) {
+  std::vector<std::uint32_t> first_child = {0};
+  std::size_t child = 0;
+  for (const CellKey<D>& key : coarse) {
+    while (child < finer.size() && grid.ancestor(finer[child], s - 1, s) == key) ++child;
+    first_child.push_back(static_cast<std::uint32_t>(child));
+  }
+  if (child < finer.size())
+    throw std::invalid_argument("cell " + toString<D>(grid.ancestor(finer[child], s - 1, s)) + " of scale " +
+                                std::to_string(s) + " is missing");
+  return first_child;
+}
+
+}  // namespace gaussmap

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/run_app.h"
+#include "io/temporary_directory.h"
+
+namespace gaussmap::test {
+
+using Json = nlohmann::json;
+
+/// The program as its users meet it: files, exit codes, and what stands on stdout and stderr.
+class AppTest : public testing::Test {
+ protected:
+  std::string own(const std::string& name) const { return (directory_.path() / name).string(); }
+
+  std::vector<std::string> ownFiles() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(directory_.path()))
+      names.push_back(std::filesystem::relative(entry.path(), directory_.path()).string());
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+  /// Succeeds in silence on stderr; returns stdout.
+  static std::string succeed(const std::vector<std::string>& arguments) {
+    const Outcome outcome = runApp(arguments);
+    EXPECT_EQ(outcome.code, 0) << testing::PrintToString(arguments) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    return outcome.out;
+  }
+  static Json infoOf(const std::string& map) { return Json::parse(succeed({"info", map, "--json"})); }
+
+  /// Fails with this code and one line on stderr that holds `word`; prints nothing else and makes no file.
+  void expectFailure(int code, const std::string& word, const std::vector<std::string>& arguments) const {
+    SCOPED_TRACE(testing::PrintToString(arguments));
+    const std::vector<std::string> before = ownFiles();
+    const Outcome outcome = runApp(arguments);
+    EXPECT_EQ(outcome.code, code);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(outcome.err.find("gaussmap: "), 0u) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_NE(outcome.err.find(word), std::string::npos) << outcome.err;
+    EXPECT_LT(outcome.err.size(), 600u) << outcome.err;
+    EXPECT_EQ(ownFiles(), before);
+  }
+  void expectUsageError(const std::string& word, const std::vector<std::string>& arguments) const {
+    expectFailure(2, word, arguments);
+  }
+  void expectDataError(const std::string& word, const std::vector<std::string>& arguments) const {
+    expectFailure(1, word, arguments);
+  }
+
+  TemporaryDirectory directory_;
+};
+
+/// Five small scans of the corner, made once, and an unrefined map of them.
+class Apps : public AppTest {
+ protected:
+  static void SetUpTestSuite() {
+    scene_ = std::make_unique<TemporaryDirectory>();
+    ASSERT_EQ(runApp({"simulate", "-o", scene("").string(), "--rings", "8", "--columns", "60"}).code, 0);
+    ASSERT_EQ(runApp({"pcd2map", scene("scans"), "-o", scene("map.gmap"), "--budget", "1"}).code, 0);
+    ASSERT_EQ(runApp({"export", scene("map.gmap"), scene("map.pcd")}).code, 0);
+  }
+  static void TearDownTestSuite() { scene_.reset(); }
+
+  static std::filesystem::path scene(const std::string& name) { return scene_->path() / name; }
+
+ private:
+  static inline std::unique_ptr<TemporaryDirectory> scene_;
+};
+
+}  // namespace gaussmap::test

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "refinement_data.h"
+
+#include "gaussmap/evaluation/nearest_distances.h"
+#include "gaussmap/io/pcd_reader.h"
+#include "gaussmap/mapping/accumulate_scans.h"
+#include "plain_street.h"
+
+namespace gaussmap::refinement {
+namespace {
+
+constexpr double kSpacing = 0.05;  // of the points on the truth [m]
+constexpr double kObserved = 0.5;  // a surface counts as observed so near to a ray's end [m]
+
+/// The ends of rays are measured against too, but far away they stand metres apart, so that a map is blamed for
+/// what it rightly fills between them.
+std::vector<Vector<3>> observedSurface(const TriangleMesh& mesh, const std::vector<Vector<3>>& hits) {
+  const auto count = static_cast<std::size_t>(surfaceArea(mesh) / (kSpacing * kSpacing));
+  const std::vector<Vector<3>> all = sampleSurface(mesh, count);
+  const std::vector<double> distances = nearestDistances(all, hits);
+  std::vector<Vector<3>> observed;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (distances[i] <= kObserved) observed.push_back(all[i]);
+  return observed;
+}
+
+DataSet street(const std::string& name, const std::function<Simulation()>& make) {
+  const auto load = [make](std::uint64_t seed) {
+    const Simulation simulation = make();
+    LoadedData data = simulatedDrive(simulation, seed);
+    data.truth = observedSurface(data.mesh, data.hits);
+    return data;
+  };
+  return {name, "points on the observed surface, 5 cm apart", {0.1, 10, 3}, {3.4, 4.0}, true, 0.0, load};
+}
+
+DataSet scan(const std::string& name, const std::filesystem::path& path, const MapOptions& options,
+             double times_below_one, double min_range = 0.0, double max_range = AccumulateOptions().max_range) {
+  const auto load = [=](std::uint64_t) {
+    AccumulateOptions reading;
+    reading.max_range = max_range;
+    const Pose pose = normalised(PcdReader(path).header().viewpoint);
+    LoadedData data;
+    for (const Vector<3>& point : readScans({{path, pose}}, reading))
+      if ((point - pose.translation).norm() >= min_range) data.points.push_back(point);
+    data.truth = data.points;
+    return data;
+  };
+  return {name, "the points themselves", options, {4.0}, false, times_below_one, load};
+}
+
+}  // namespace
+
+LoadedData simulatedDrive(const Simulation& simulation, std::uint64_t seed) {
+  LoadedData data;
+  data.mesh = simulation.world.mesh();
+  for (std::size_t i = 0; i < simulation.trajectory.size(); ++i) {
+    const SimulatedScan scan = simulateScan(simulation, i, seed);
+    for (const Vector<3>& point : scan.points)
+      data.points.push_back(scan.pose.rotation * point + scan.pose.translation);
+    data.hits.insert(data.hits.end(), scan.truth.begin(), scan.truth.end());
+  }
+  return data;
+}
+
+std::vector<DataSet> dataSets(const std::filesystem::path& data, int scans) {
+  SimulationOptions options;
+  options.scans = scans;
+  std::vector<DataSet> sets = {
+      street("simulated street", [options] { return makeSimulation(WorldName::Street, options); }),
+      street("plain street", [options] { return benchmark_input::plainStreet(options); })};
+  if (data.empty()) return sets;
+  sets.push_back(scan("KITTI, one scan", data / "kitti_6scans/000000.pcd", {0.1, 10, 3}, 2.5, 2.5, 25.0));
+  sets.push_back(scan("RGB-D office", data / "rgbd_office_single/office1.pcd", {0.02, 10, 3}, 2.5));
+  sets.push_back(scan("building 079", data / "octomap_geb079/geb079_occupied_8cm.pcd", {0.24, 4, 3}, 2.0));
+  return sets;
+}
+
+}  // namespace gaussmap::refinement

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "gaussmap/evaluation/triangle_mesh.h"
+#include "gaussmap/map/grid.h"
+#include "gaussmap/simulation/simulation.h"
+
+namespace gaussmap::refinement {
+
+struct LoadedData {
+  std::vector<Vector<3>> points;  // what the map is made of [m]
+  std::vector<Vector<3>> truth;   // what its samples are measured against [m]
+  std::vector<Vector<3>> hits;    // simulated: where the rays met the surface [m]; else empty
+  TriangleMesh mesh;              // simulated: the whole surface; else empty
+};
+
+struct DataSet {
+  std::string name;
+  std::string truth;  // in words
+  MapOptions options;
+  std::vector<double> budgets;  // multiples of the coarsest scale's cells
+  bool simulated = false;
+  double times_below_one = 0.0;  // not simulated: how far 99 % and 95 % at 4 x shall be below one Gaussian per cell
+  std::function<LoadedData(std::uint64_t seed)> load;
+};
+
+/// All points of a simulated drive [m, map frame].
+LoadedData simulatedDrive(const Simulation& simulation, std::uint64_t seed);
+
+/// The built-in street and the plain one of plain_street.h, `scans` each (0: as they are); with a folder of data (not
+/// empty) also one outdoor scan, one RGB-D image and one building.
+std::vector<DataSet> dataSets(const std::filesystem::path& data, int scans);
+
+}  // namespace gaussmap::refinement

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "refinement_result.h"
+
+namespace gaussmap::refinement {
+
+/// Markdown on stdout: everything about one data set, means over the seeds with the worst in brackets.
+void printTable(const Table& table, const std::vector<Goal>& goals);
+
+/// The coarsest scales of all data sets in one table: 99 % / 95 % / mean over the seeds.
+void printOverview(const std::vector<Table>& tables);
+
+nlohmann::ordered_json toJson(const Table& table, const std::vector<Goal>& goals);
+
+}  // namespace gaussmap::refinement

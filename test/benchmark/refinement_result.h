@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "gaussmap/evaluation/hausdorff.h"
+#include "refinement_data.h"
+
+namespace gaussmap::refinement {
+
+inline constexpr const char* kOnePerCell = "one per cell";
+inline constexpr const char* kPaper = "paper's method";
+inline constexpr const char* kParentSeed = "paper's, parent seed";
+inline constexpr const char* kAgglomerative = "agglomerative";
+inline constexpr const char* kUniformGrid = "uniform grid";
+
+/// What one seed gave: distances of samples.
+struct Run {
+  std::size_t gaussians = 0;
+  DistanceSummary to_truth;
+  DistanceSummary missed;            // the other way: from the truth to the samples
+  DistanceSummary to_mesh, to_hits;  // simulated: to the exact surface, and to where rays met it
+};
+
+/// A method at a budget.
+struct Row {
+  double budget = 1.0;
+  std::string method;
+  std::vector<Run> runs;
+};
+
+/// One data set.
+struct Table {
+  const DataSet* data = nullptr;
+  std::vector<Row> rows;                // of the coarsest scale
+  Row middle{2.0, kAgglomerative, {}};  // simulated: the scale below it, and the finest
+  Row finest{1.0, kOnePerCell, {}};
+
+  Row& row(double budget, const std::string& method) {
+    for (Row& row : rows)
+      if (row.budget == budget && row.method == method) return row;
+    rows.push_back({budget, method, {}});
+    return rows.back();
+  }
+};
+
+/// A number over the seeds.
+struct Figure {
+  double mean = 0.0, worst = 0.0;
+};
+template <typename Value>
+Figure figure(const Row& row, const Value& value) {
+  Figure figure;
+  for (const Run& run : row.runs) {
+    figure.mean += value(run) / static_cast<double>(row.runs.size());
+    figure.worst = std::max(figure.worst, value(run));
+  }
+  return figure;
+}
+
+/// A ratio of two figures to reach.
+struct Goal {
+  std::string text;
+  double wanted, reached;
+  bool at_least;  // or at most
+  bool met() const { return at_least ? reached >= wanted : reached <= wanted; }
+};
+
+}  // namespace gaussmap::refinement

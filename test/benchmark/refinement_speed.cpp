@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// gaussmap_refinement_speed [--scans 0] [--runs 5]: seconds of agglomerative refinement on the simulated street, one
+// thread: the coarsest scale, and a middle scale of about 250,000 finest Gaussians; the clustering alone beside scalar
+// code with logarithms on the same data. Shortest of the runs, which take turns.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <stdexcept>
+
+#include "gaussmap/mapping/build.h"
+#include "gaussmap/mapping/coarsen.h"
+#include "gaussmap/mapping/refine.h"
+#include "mapping/blur.h"
+#include "refinement_data.h"
+#include "scalar_agglomerate.h"
+
+namespace gaussmap::refinement {
+namespace {
+
+constexpr double kFinest = 250000.0;  // Gaussians under the middle scale
+constexpr double kBudget = 3.4;
+
+template <typename Work>
+double seconds(const Work& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// What a coarse cell's refinement starts from.
+struct CellData {
+  std::vector<Gaussian<3>> gaussians;
+  std::vector<double> areas;
+};
+
+/// The same data that refine() clusters: blurred, with the number of occupied finest cells.
+std::vector<CellData> dataOf(const GaussianMap<3>& map, int coarse) {
+  std::vector<double> areas(map.gaussianCount(0), 1.0);
+  for (int s = 0; s + 1 < coarse; ++s) {
+    std::vector<double> coarser(map.gaussianCount(s + 1), 0.0);
+    for (std::size_t i = 0; i < areas.size(); ++i) coarser[map.parentOf(i, s)] += areas[i];
+    areas = std::move(coarser);
+  }
+  std::vector<CellData> cells(map.cellCount(coarse));
+  for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+    gatherUnder<3>(map.scale(coarse - 1), map.grid(), coarse - 1, map.childCells(cell, coarse), cells[cell].gaussians);
+    blurForClustering(cells[cell].gaussians, map.grid().side(0));
+    const IndexRange under = map.gaussiansUnder(cell, coarse);
+    for (std::size_t i = under.first; i < under.last; ++i) cells[cell].areas.push_back(areas[i]);
+  }
+  return cells;
+}
+
+struct Times {
+  double whole = std::numeric_limits<double>::infinity();
+  double clustering = std::numeric_limits<double>::infinity();
+  double scalar = std::numeric_limits<double>::infinity();
+};
+
+/// Clusters cells with the library's code and with scalar code.
+void timeClustering(const std::vector<CellData>& cells, Times& times) {
+  std::size_t merges = 0;  // used, so that no call is optimised away
+  times.clustering = std::min(times.clustering, seconds([&] {
+                                for (const CellData& cell : cells)
+                                  merges += agglomerate(cell.gaussians, cell.areas).merges.size();
+                              }));
+  times.scalar = std::min(times.scalar, seconds([&] {
+                            for (const CellData& cell : cells)
+                              merges += scalarAgglomerate(cell.gaussians).merges.size();
+                          }));
+  if (merges == 0) throw std::logic_error("nothing was clustered");
+}
+
+/// The scalar code must be another way to the same result, with the cost that it has.
+void checkScalar(const std::vector<CellData>& cells) {
+  AgglomerateOptions options;
+  options.cost = MergeCost::Runnalls;
+  for (const CellData& cell : cells) {
+    if (cell.gaussians.size() > options.most_exact) continue;
+    const auto sum = [](const Dendrogram& dendrogram) {
+      double costs = 0.0;
+      for (const Dendrogram::Merge& merge : dendrogram.merges) costs += merge.cost;
+      return costs;
+    };
+    const double ours = sum(agglomerate(cell.gaussians, cell.areas, options));
+    const double theirs = sum(scalarAgglomerate(cell.gaussians));
+    if (!(std::abs(ours - theirs) <= 1e-6 * (1.0 + std::abs(ours))))
+      throw std::logic_error("the scalar code clusters in another way");
+  }
+}
+
+RefineOptions oneThread() {
+  RefineOptions options;
+  options.budget = kBudget;
+  options.threads = 1;
+  return options;
+}
+
+/// Points of the first scans, so many that they fill about kFinest cells.
+GaussianMap<3> quarterMillion(const std::vector<Vector<3>>& points, std::size_t cells) {
+  const double share = std::min(1.0, kFinest / static_cast<double>(cells));
+  // Cells grow nearly with the points along the way; two steps come near enough.
+  auto count = static_cast<std::size_t>(share * static_cast<double>(points.size()));
+  GaussianMap<3> map({0.1, 10, 2});
+  for (int step = 0; step < 3; ++step) {
+    map = build<3>({points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count)}, {0.1, 10, 2});
+    if (share == 1.0) break;
+    const double next = static_cast<double>(count) * kFinest / static_cast<double>(map.cellCount(0));
+    if (step < 2) count = std::min(points.size(), static_cast<std::size_t>(next));
+  }
+  return map;
+}
+
+void print(const char* scale, std::size_t cells, std::size_t data, double wanted, const Times& times) {
+  const double ratio = times.scalar / times.clustering;
+  std::printf("| %s | %zu | %zu | %.3f s | %g s | %.3f s | %.3f s | %.1f | %s |\n", scale, cells, data, times.whole,
+              wanted, times.clustering, times.scalar, ratio, times.whole < wanted || ratio >= 15.0 ? "met" : "MISSED");
+}
+
+void run(int scans, int runs) {
+  SimulationOptions street;
+  street.scans = scans;
+  const std::vector<Vector<3>> points = simulatedDrive(makeSimulation(WorldName::Street, street), 1).points;
+  const GaussianMap<3> one = build<3>(points, {0.1, 10, 3});
+  const GaussianMap<3> middle = quarterMillion(points, one.cellCount(0));
+  RefineOptions without_coarsest = oneThread();
+  without_coarsest.max_gaussians[2] = one.cellCount(2);
+  const std::vector<CellData> coarsest_data = dataOf(refine<3>(one, oneThread()), 2), middle_data = dataOf(middle, 1);
+
+  checkScalar(coarsest_data);
+  checkScalar(middle_data);
+
+  Times coarsest_times, middle_times;
+  double both = std::numeric_limits<double>::infinity(), below = both;
+  for (int i = 0; i < runs; ++i) {
+    both = std::min(both, seconds([&] { refine<3>(one, oneThread()); }));
+    below = std::min(below, seconds([&] { refine<3>(one, without_coarsest); }));
+    middle_times.whole = std::min(middle_times.whole, seconds([&] { refine<3>(middle, oneThread()); }));
+    timeClustering(coarsest_data, coarsest_times);
+    timeClustering(middle_data, middle_times);
+  }
+  coarsest_times.whole = both - below;
+
+  std::printf(
+      "| scale | cells | finer Gaussians | refined in | wanted below | clustering | scalar | scalar / ours |  |\n");
+  std::printf("|---|---|---|---|---|---|---|---|---|\n");
+  std::size_t data = 0;
+  for (const CellData& cell : coarsest_data) data += cell.gaussians.size();
+  print("coarsest, 10 m", one.cellCount(2), data, 0.15, coarsest_times);
+  print("middle, 1 m", middle.cellCount(1), middle.cellCount(0), 1.5, middle_times);
+}
+
+}  // namespace
+}  // namespace gaussmap::refinement
+
+int main(int argc, char** argv) try {
+  int scans = 0, runs = 5;
+  CLI::App app("Seconds of agglomerative refinement");
+  app.add_option("--scans", scans, "of the street; 0: as many as it has")->check(CLI::Range(0, 1000));
+  app.add_option("--runs", runs, "the shortest counts")->check(CLI::Range(1, 1000))->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  gaussmap::refinement::run(scans, runs);
+  return 0;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "gaussmap_refinement_speed: %s\n", error.what());
+  return 1;
+}
