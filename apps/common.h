@@ -27,6 +27,8 @@ struct UsageError : std::runtime_error {
 void addPcd2map(CLI::App& app);
 void addRefine(CLI::App& app);
 void addCompress(CLI::App& app);
+void addClean(CLI::App& app);
+void addRestore(CLI::App& app);
 void addInfo(CLI::App& app);
 void addExport(CLI::App& app);
 void addHausdorff(CLI::App& app);

@@ -40,6 +40,8 @@ int main(int argc, char** argv) {
   addPcd2map(app);
   addRefine(app);
   addCompress(app);
+  addClean(app);
+  addRestore(app);
   addInfo(app);
   addExport(app);
   addHausdorff(app);

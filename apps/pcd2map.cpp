@@ -7,6 +7,7 @@
 #include "common.h"
 #include "gaussmap/io/scan_list.h"
 #include "gaussmap/mapping/build.h"
+#include "online.h"
 
 namespace gaussmap::app {
 namespace {
@@ -16,8 +17,57 @@ struct Pcd2mapOptions {
   Output output;
   MapOptions map;
   BudgetInput budget;
+  OnlineInput online;
   bool json = false;
 };
+
+struct Built {
+  GaussianMap<3> map;
+  PointCounts counts;
+};
+
+void requirePoints(const PointCounts& counts, const std::vector<ScanSource>& scans) {
+  if (counts.accepted > 0) return;
+  throw std::runtime_error(nameOf(scans) + ": of " + std::to_string(counts.read) + " points none is usable: " +
+                           std::to_string(counts.non_finite) + " are not finite, " + std::to_string(counts.at_sensor) +
+                           " at range 0, " + std::to_string(counts.beyond_range) + " beyond --max-range");
+}
+
+Json jsonOf(const PointCounts& counts) {
+  return {{"read", counts.read},
+          {"accepted", counts.accepted},
+          {"non_finite", counts.non_finite},
+          {"at_sensor", counts.at_sensor},
+          {"beyond_range", counts.beyond_range}};
+}
+
+Json historyOf(const std::vector<ScanSource>& scans, const PointCounts& counts) {
+  return {{"command", "pcd2map"}, {"version", GAUSSMAP_VERSION}, {"scans", scans.size()}, {"points", jsonOf(counts)}};
+}
+
+Built buildAtOnce(const Pcd2mapOptions& options, const std::vector<ScanSource>& scans, const AccumulateOptions& reading,
+                  MapMetadata& metadata) {
+  ProgressBar bar;
+  AccumulatedScans accumulated =
+      accumulateScans(scans, reading, [&](const AccumulateProgress& progress) { bar.show(progress); });
+  const PointCounts counts = accumulated.counts;
+  requirePoints(counts, scans);
+  GaussianMap<3> map = build<3>(accumulated.moments, options.map);
+  accumulated.moments = MomentGrid<3>(options.map.resolution);  // its memory is not needed twice
+  return {refineWithin(std::move(map), options.budget, metadata, historyOf(scans, counts)), counts};
+}
+
+Built buildOnline(const Pcd2mapOptions& options, const std::vector<ScanSource>& scans, const AccumulateOptions& reading,
+                  MapMetadata& metadata) {
+  OnlineResult result = mapOnline(scans, options.online, options.map, reading, options.budget);
+  requirePoints(result.counts, scans);
+  Json step = historyOf(scans, result.counts);
+  step["online"] = true;
+  step["budget"] = options.budget.budget;
+  step["deleted"] = result.deleted;
+  addHistory(metadata, step);
+  return {std::move(result.map), result.counts};
+}
 
 void pcd2map(const Pcd2mapOptions& options) {
   try {
@@ -29,32 +79,17 @@ void pcd2map(const Pcd2mapOptions& options) {
   if (!options.input.poses.empty()) inputs.push_back(options.input.poses);
   checkMapOutput(options.output, inputs);
   checkBudget(options.budget);
+  checkOnline(options.online, options.budget, options.output, inputs);
   const double start = now();
   const int threads = options.budget.refine.threads;
 
   const std::vector<ScanSource> scans = findScans(options.input);
-  ProgressBar bar;
-  AccumulatedScans accumulated =
-      accumulateScans(scans, accumulateOptions(options.input, options.map.resolution, threads),
-                      [&](const AccumulateProgress& progress) { bar.show(progress); });
-  const PointCounts counts = accumulated.counts;
-  if (counts.accepted == 0)
-    throw std::runtime_error(nameOf(scans) + ": of " + std::to_string(counts.read) +
-                             " points none is usable: " + std::to_string(counts.non_finite) + " are not finite, " +
-                             std::to_string(counts.at_sensor) + " at range 0, " + std::to_string(counts.beyond_range) +
-                             " beyond --max-range");
-  GaussianMap<3> map = build<3>(accumulated.moments, options.map);
-  accumulated.moments = MomentGrid<3>(options.map.resolution);  // its memory is not needed twice
-
-  const Json points = {{"read", counts.read},
-                       {"accepted", counts.accepted},
-                       {"non_finite", counts.non_finite},
-                       {"at_sensor", counts.at_sensor},
-                       {"beyond_range", counts.beyond_range}};
   MapMetadata metadata;
-  map = refineWithin(
-      std::move(map), options.budget, metadata,
-      {{"command", "pcd2map"}, {"version", GAUSSMAP_VERSION}, {"scans", scans.size()}, {"points", points}});
+  const AccumulateOptions reading = accumulateOptions(options.input, options.map.resolution, threads);
+  const Built built = options.online.on ? buildOnline(options, scans, reading, metadata)
+                                        : buildAtOnce(options, scans, reading, metadata);
+  const GaussianMap<3>& map = built.map;
+  const PointCounts& counts = built.counts;
   saveMap<3>(map, options.output.path, metadata, {options.output.force, SaveOptions().compression, threads});
 
   const std::uintmax_t bytes = std::filesystem::file_size(options.output.path);
@@ -62,7 +97,7 @@ void pcd2map(const Pcd2mapOptions& options) {
   if (options.json) {
     printJson({{"map", options.output.path},
                {"scans", scans.size()},
-               {"points", points},
+               {"points", jsonOf(counts)},
                {"scales", scalesOf(map)},
                {"bytes", bytes},
                {"seconds", seconds}});
@@ -97,6 +132,7 @@ void addPcd2map(CLI::App& app) {
   command->add_option("--noise", options->map.noise, "noise floor of every Gaussian [m]; 0: resolution / 20")
       ->capture_default_str();
   addBudgetOptions(*command, options->budget);
+  addOnlineOptions(*command, options->online);
   addScanOptions(*command, options->input);
   command->add_flag("--json", options->json, "print the result for machines");
   command->callback([options] { pcd2map(*options); });

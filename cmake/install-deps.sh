@@ -6,11 +6,11 @@ set -euo pipefail
 
 packages=(
   g++ cmake ninja-build ccache pkg-config
-  libeigen3-dev libtbb-dev libnanoflann-dev                # core: algebra, threads, nearest neighbours
+  libeigen3-dev libtbb-dev libnanoflann-dev libboost-dev   # core: algebra, threads, nearest neighbours, containers
   libsqlite3-dev libzstd-dev liblzf-dev                    # core: map files, compressed PCD
   libpcl-dev                                               # the PCL edge
   libcli11-dev nlohmann-json3-dev                          # the command line
-  libgtest-dev libbenchmark-dev                            # tests, benchmarks
+  libgtest-dev libbenchmark-dev liboctomap-dev             # tests, benchmarks and a peer for them
 )
 
 missing=()

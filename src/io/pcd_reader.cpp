@@ -5,8 +5,10 @@
 #include <array>
 #include <atomic>
 #include <cstring>
+#include <limits>
 #include <mutex>
 #include <numeric>
+#include <type_traits>
 
 #include "io/mapped_file.h"
 #include "io/pcd_body.h"
@@ -25,30 +27,56 @@ struct Scalars {
   std::size_t size = 8;
 };
 
-template <typename T>
-void widen(const Scalars& scalars, std::size_t begin, std::size_t count, double* values) {
-  const char* place = scalars.first + begin * scalars.step;
-  for (std::size_t i = 0; i < count; ++i) {
-    T value;
-    std::memcpy(&value, place + i * scalars.step, sizeof(T));
-    values[i] = static_cast<double>(value);
-  }
+/// Calls body with a value of the C++ type for such scalars; false if there is none.
+template <typename Body>
+bool withType(char type, std::size_t size, const Body& body) {
+  const auto is = [type, size](char t, std::size_t s) { return type == t && size == s; };
+  if (is('F', 4)) return body(float{}), true;
+  if (is('F', 8)) return body(double{}), true;
+  if (is('I', 1)) return body(std::int8_t{}), true;
+  if (is('I', 2)) return body(std::int16_t{}), true;
+  if (is('I', 4)) return body(std::int32_t{}), true;
+  if (is('I', 8)) return body(std::int64_t{}), true;
+  if (is('U', 1)) return body(std::uint8_t{}), true;
+  if (is('U', 2)) return body(std::uint16_t{}), true;
+  if (is('U', 4)) return body(std::uint32_t{}), true;
+  if (is('U', 8)) return body(std::uint64_t{}), true;
+  return false;
 }
 
 /// False if there is no such scalar type.
 bool widen(const Scalars& scalars, std::size_t begin, std::size_t count, double* values) {
-  const auto is = [&scalars](char type, std::size_t size) { return scalars.type == type && scalars.size == size; };
-  if (is('F', 4)) return widen<float>(scalars, begin, count, values), true;
-  if (is('F', 8)) return widen<double>(scalars, begin, count, values), true;
-  if (is('I', 1)) return widen<std::int8_t>(scalars, begin, count, values), true;
-  if (is('I', 2)) return widen<std::int16_t>(scalars, begin, count, values), true;
-  if (is('I', 4)) return widen<std::int32_t>(scalars, begin, count, values), true;
-  if (is('I', 8)) return widen<std::int64_t>(scalars, begin, count, values), true;
-  if (is('U', 1)) return widen<std::uint8_t>(scalars, begin, count, values), true;
-  if (is('U', 2)) return widen<std::uint16_t>(scalars, begin, count, values), true;
-  if (is('U', 4)) return widen<std::uint32_t>(scalars, begin, count, values), true;
-  if (is('U', 8)) return widen<std::uint64_t>(scalars, begin, count, values), true;
-  return false;
+  return withType(scalars.type, scalars.size, [&](auto value) {
+    const char* place = scalars.first + begin * scalars.step;
+    for (std::size_t i = 0; i < count; ++i) {
+      std::memcpy(&value, place + i * scalars.step, sizeof(value));
+      values[i] = static_cast<double>(value);
+    }
+  });
+}
+
+/// A number in another type. What an integer cannot hold becomes the nearest it can: a cast would be undefined.
+template <typename T>
+T rounded(double number) {
+  if constexpr (std::is_integral_v<T>) {
+    using Limits = std::numeric_limits<T>;
+    if (!(number > static_cast<double>(Limits::min()))) return Limits::min();
+    if (number >= static_cast<double>(Limits::max())) return Limits::max();
+  }
+  return static_cast<T>(number);
+}
+
+/// Writes one element of a field of every point into records of DATA binary.
+void narrow(const std::vector<double>& values, const PcdField& field, std::size_t element, std::size_t record,
+            char* records) {
+  withType(field.type, field.size, [&](auto value) {
+    char* place = records + field.offset + element * field.size;
+    for (const double number : values) {
+      value = rounded<decltype(value)>(number);
+      std::memcpy(place, &value, sizeof(value));
+      place += record;
+    }
+  });
 }
 
 Scalars scalarsOf(const PcdField& field, std::size_t element, const char* bytes, PcdStride stride) {
@@ -188,6 +216,38 @@ std::vector<std::vector<double>> PcdReader::columns(const std::vector<PcdColumn>
 
 std::vector<double> PcdReader::column(const std::string& field, std::size_t element) const {
   return std::move(columns({{field, element}}).front());
+}
+
+std::vector<char> PcdReader::records() const {
+  const std::size_t record = header_.record_size;
+  std::vector<char> records(size() * record);
+  if (records.empty()) return records;
+  switch (header_.encoding) {
+    case PcdEncoding::Binary:
+      std::memcpy(records.data(), body_->data.data(), records.size());
+      break;
+    case PcdEncoding::BinaryCompressed: {
+      const PcdExpanded all(path_, header_, body_->data);
+      for (const PcdField& field : header_.fields) {
+        if (field.name == "_") continue;
+        const PcdStride stride = all.strideOf(field);
+        for (std::size_t i = 0; i < size(); ++i)
+          std::memcpy(records.data() + i * record + field.offset, all.bytes() + stride.offset + i * stride.step,
+                      field.size * field.count);
+      }
+      break;
+    }
+    case PcdEncoding::Ascii: {
+      std::vector<PcdColumn> wanted;
+      for (const PcdField& field : header_.fields)
+        for (std::size_t element = 0; field.name != "_" && element < field.count; ++element)
+          wanted.push_back({field.name, element});
+      const std::vector<std::vector<double>> values = columns(wanted);
+      for (std::size_t i = 0; i < wanted.size(); ++i)
+        narrow(values[i], *header_.find(wanted[i].field), wanted[i].element, record, records.data());
+    }
+  }
+  return records;
 }
 
 std::uint64_t PcdReader::fingerprint() const {

@@ -38,7 +38,7 @@ void checkFields(const std::vector<PcdOutput>& fields, std::size_t points) {
   }
 }
 
-std::string header(std::size_t points, const std::vector<PcdOutput>& fields, const Pose& viewpoint) {
+std::string header(std::size_t width, std::size_t height, const std::vector<PcdOutput>& fields, const Pose& viewpoint) {
   std::ostringstream text;
   text.imbue(std::locale::classic());  // a decimal comma would make the file unreadable
   text.precision(std::numeric_limits<double>::max_digits10);
@@ -52,22 +52,24 @@ std::string header(std::size_t points, const std::vector<PcdOutput>& fields, con
   for (const PcdOutput& field : fields) text << ' ' << field.count;
   const Eigen::Vector3d& t = viewpoint.translation;
   const Pose::Rotation& q = viewpoint.rotation;
-  text << "\nWIDTH " << points << "\nHEIGHT 1\nVIEWPOINT " << t.x() << ' ' << t.y() << ' ' << t.z() << ' ' << q.w()
-       << ' ' << q.x() << ' ' << q.y() << ' ' << q.z() << "\nPOINTS " << points << "\nDATA binary\n";
+  text << "\nWIDTH " << width << "\nHEIGHT " << height << "\nVIEWPOINT " << t.x() << ' ' << t.y() << ' ' << t.z() << ' '
+       << q.w() << ' ' << q.x() << ' ' << q.y() << ' ' << q.z() << "\nPOINTS " << width * height << "\nDATA binary\n";
   return text.str();
 }
 
 }  // namespace
 
 void writePcd(const std::filesystem::path& path, std::size_t points, const std::vector<PcdOutput>& fields,
-              const std::optional<Pose>& viewpoint) {
+              const std::optional<Pose>& viewpoint, std::size_t width) {
   checkFields(fields, points);
   if (points > kMostPoints) throw std::invalid_argument("a PCD file holds at most 2^32 - 1 points");
+  if (width > 0 && points % width != 0)
+    throw std::invalid_argument(std::to_string(points) + " points do not fill rows of " + std::to_string(width));
   const Pose pose = viewpoint.value_or(Pose());
   if (const std::string fault = poseFault(pose); !fault.empty()) throw std::invalid_argument("PCD viewpoint: " + fault);
 
   AtomicFile file(path);
-  const std::string text = header(points, fields, pose);
+  const std::string text = width > 0 ? header(width, points / width, fields, pose) : header(points, 1, fields, pose);
   file.write(text.data(), text.size());
 
   std::size_t record = 0;

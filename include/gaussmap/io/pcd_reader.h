@@ -79,6 +79,11 @@ class PcdReader {
   std::vector<std::vector<double>> columns(const std::vector<PcdColumn>& wanted) const;
   std::vector<double> column(const std::string& field, std::size_t element = 0) const;
 
+  /// All points with all their fields, size() * header().record_size bytes as in DATA binary: what a program needs that
+  /// hands on fields it does not know. An 8-byte integer beyond 2^53 is rounded if the file is ascii.
+  /// Throws FileError if the data are damaged, or a field of an ascii file is no number gaussmap knows.
+  std::vector<char> records() const;
+
   /// A number that tells clouds apart: of the point count and of some bytes sampled all over the data, so that it
   /// costs the same for any size. The same for copies of a file, different for the same cloud in another encoding.
   std::uint64_t fingerprint() const;

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mapping/shared_cells.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+#include "common/parallel.h"
+#include "mapping/check_options.h"
+#include "mapping/near_cells.h"
+
+namespace gaussmap {
+namespace {
+
+constexpr double kFewest = 10.0;  // points that make a surface
+constexpr double kExtent = 0.05;  // a surface has a standard deviation of at least this on its second axis [m]
+
+/// Sums over points about one place.
+struct Sums {
+  double n = 0.0;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d product = Eigen::Matrix3d::Zero();
+
+  void add(const CellMoments<3>& moments, double side, const Eigen::Vector3d& offset) {
+    const auto count = static_cast<double>(moments.count);
+    const Eigen::Vector3d mean = moments.mean(side) + offset;
+    n += count;
+    sum += count * mean;
+    product += count * (moments.covariance(side) + mean * mean.transpose());
+  }
+
+  std::optional<Surface> surface(double flatness) const {
+    if (n < kFewest) return std::nullopt;
+    const Eigen::Vector3d mean = sum / n;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(product / n - mean * mean.transpose());
+    const double across = std::sqrt(std::max(0.0, axes.eigenvalues()[0]));
+    const double along = std::sqrt(std::max(0.0, axes.eigenvalues()[1]));
+    if (across > flatness || along < kExtent) return std::nullopt;
+    return Surface{mean, axes.eigenvectors().col(0), across};
+  }
+};
+
+}  // namespace
+
+void checkOptions(const SharedCellOptions& options, double resolution) {
+  require(options.reach >= 0.0 && options.reach <= kMostCells * resolution, "reach of a surface", options.reach,
+          "must be 0 to 1000 cells");
+  require(options.flatness >= 0.0, "flatness", options.flatness, "must not be negative");
+  require(options.noise >= 0.0, "noise", options.noise, "must not be negative");
+}
+
+SharedCells findSharedCells(const GaussianMap<3>& map, const std::vector<bool>& moving,
+                            const std::vector<Evidence>& evidence) {
+  SharedCells shared;
+  for (std::size_t cell = 0; cell < moving.size(); ++cell) {
+    if (!moving[cell]) continue;
+    const std::uint32_t first = evidence[cell].first_hit, last = evidence[cell].last_hit;
+    const auto widen = [&](std::size_t near) {
+      SharedCell& entry = shared.try_emplace(near, SharedCell{first, last}).first->second;
+      entry.first_scan = std::min(entry.first_scan, first);
+      entry.last_scan = std::max(entry.last_scan, last);
+    };
+    widen(cell);
+    forNearCells(map, cell, 1, 1, widen);
+  }
+  return shared;
+}
+
+void fitSurfaces(const GaussianMap<3>& map, const std::vector<bool>& moving, const MomentGrid<3>& still,
+                 const SharedCellOptions& options, int threads, SharedCells& shared) {
+  const double side = map.grid().side(0);
+  const std::int32_t reach = cellsFor(options.reach, side);
+  std::unordered_map<std::size_t, CellMoments<3>> between;  // what is left of the shared cells
+  for (std::size_t i = 0; i < still.size(); ++i)
+    if (const auto cell = map.find(still[i].key, 0)) between.emplace(*cell, still[i].moments);
+
+  std::vector<std::pair<const std::size_t, SharedCell>*> entries;
+  for (auto& entry : shared) entries.push_back(&entry);
+  parallelFor(entries.size(), threads, 64, [&](std::size_t i) {
+    const std::size_t cell = entries[i]->first;
+    const CellKey<3> key = map.scale(0).keys[cell];
+    Sums sums;
+    const auto add = [&](std::size_t near) {
+      if (moving[near]) return;
+      const CellMoments<3>* moments = &map.scale(0).moments[near];
+      if (shared.count(near) > 0) {
+        const auto found = between.find(near);
+        if (found == between.end()) return;
+        moments = &found->second;
+      }
+      const CellKey<3> other = map.scale(0).keys[near];
+      sums.add(*moments, side, side * Eigen::Vector3d(other[0] - key[0], other[1] - key[1], other[2] - key[2]));
+    };
+    add(cell);
+    for (std::int32_t ring = 1; ring <= reach && !entries[i]->second.surface; ++ring) {
+      forNearCells(map, cell, ring, ring, add);
+      entries[i]->second.surface = sums.surface(options.flatness);
+    }
+  });
+}
+
+}  // namespace gaussmap

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <deque>
+#include <utility>
+#include <vector>
+
+#include "gaussmap/map/moment_grid.h"
+#include "gaussmap/occupancy/cull.h"
+#include "gaussmap/occupancy/range_image.h"
+#include "gaussmap/online/online_mapper.h"
+#include "online/online_cells.h"
+
+// The steps of OnlineMapper::add(), one file each.
+namespace gaussmap {
+
+/// A scan on its way into the map.
+template <int D>
+struct OnlineScan {
+  std::uint32_t number = 0;
+  Pose pose;
+  std::vector<Vector<D>> points;         // returns [m, map frame]
+  std::vector<std::uint32_t> touched;    // finest cells with points, in the order they were touched
+  std::vector<std::uint32_t> new_cells;  // of them, those not there before
+  std::vector<std::uint32_t> missed;     // finest cells that a range image sees through; may be there twice
+};
+
+/// A range image and where it was taken.
+struct View {
+  View(RangeImage seen, const Pose& from)
+      : image(std::move(seen)), pose(from), to_sensor(from.rotation.toRotationMatrix().transpose()) {}
+
+  RangeImage image;
+  Pose pose;
+  Eigen::Matrix3d to_sensor;
+
+  /// Map frame to sensor frame.
+  Eigen::Vector3d toSensor(const Eigen::Vector3d& point) const { return to_sensor * (point - pose.translation); }
+};
+
+/// A point of the map in space: in the plane, at the height of the sensor.
+inline Eigen::Vector3d inSpace(const Vector<3>& point, const Pose&) {
+  return point;
+}
+inline Eigen::Vector3d inSpace(const Vector<2>& point, const Pose& sensor) {
+  return {point.x(), point.y(), sensor.translation.z()};
+}
+
+/// Points into cells: Yguel 2009, sec. 4.3 and 4.4, Algorithm 1. Fills `touched` and `new_cells`.
+template <int D>
+void updateByPoints(OnlineCells<D>& cells, OnlineScan<D>& scan, const OnlineOptions& options);
+
+/// Puts a deleted finest cluster back; if its cell is occupied again meanwhile, adds it to what is there.
+template <int D>
+void restoreCell(OnlineCells<D>& cells, const RemovedCluster<D>& removed, const OnlineOptions& options);
+
+/// Asks the range images of the scans before about the cells that are new.
+template <int D>
+void lookBack(OnlineCells<D>& cells, OnlineScan<D>& scan, const std::deque<View>& views, const OnlineOptions& options);
+
+/// Every cluster with a point of the scan under it is hit.
+template <int D>
+void countHits(OnlineCells<D>& cells, const OnlineScan<D>& scan, const OnlineOptions& options);
+
+/// Misses of all clusters that the scan sees and did not hit, Yguel 2009, sec. 4.1 and 4.2.
+template <int D>
+void countMisses(OnlineCells<D>& cells, OnlineScan<D>& scan, const View& view, const OnlineOptions& options,
+                 OnlineStatistics& statistics);
+
+/// Deletes what is below 0, and what belongs to it; Yguel 2009, sec. 5.3.
+template <int D>
+void forget(OnlineCells<D>& cells, const OnlineScan<D>& scan, const OnlineOptions& options,
+            const typename OnlineMapper<D>::Removed& removed, OnlineStatistics& statistics);
+
+/// More clusters for the touched coarse cells that need them most; Yguel 2009, sec. 5.1.
+template <int D>
+void refineVisible(OnlineCells<D>& cells, const OnlineScan<D>& scan, const OnlineOptions& options,
+                   OnlineStatistics& statistics);
+
+/// Gives a coarse cell other clusters: `references` (about its centre), labels = which of them each finer cluster under
+/// it belongs to. Each takes over what is known of the old cluster that most of its members come from.
+template <int D>
+void recluster(OnlineCells<D>& cells, std::uint32_t i, int scale, const std::vector<Gaussian<D>>& references,
+               const std::vector<int>& labels);
+
+/// What a hit or a miss does to a cluster.
+template <int D>
+void hit(OnlineCluster<D>& cluster, std::uint32_t scan, const OccupancyOptions& options) {
+  if (cluster.evidence.hits > 0 && cluster.evidence.last_hit == scan) return;
+  cluster.evidence.hit(scan);
+  cluster.log_odds = static_cast<float>(std::min(options.most, double(cluster.log_odds) + options.hit));
+}
+template <int D>
+void miss(OnlineCluster<D>& cluster, double share, const OccupancyOptions& options) {
+  if (share > 0.5) cluster.evidence.miss();
+  cluster.log_odds = static_cast<float>(std::max(-options.most, double(cluster.log_odds) - share * options.miss));
+}
+
+}  // namespace gaussmap

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "online/online_scenes.h"
+
+namespace gaussmap {
+namespace {
+
+using namespace test;
+
+/// Gaussians of a scale in front of x = 8: those of the box.
+std::size_t inFront(const GaussianMap<3>& map, int scale) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < map.gaussianCount(scale); ++i) count += map.gaussian(i, scale).mean.x() < 8.0;
+  return count;
+}
+
+TEST(Forget, DeletesAnObjectThatLeftAfterTheViewsThatTheLogOddsDemand) {
+  OnlineMapper<3> mapper(wallOptions());
+  mapper.add(wallScan(true));
+  mapper.add(wallScan(true));
+  const GaussianMap<3> before = mapper.map();
+  for (int s = 0; s < 3; ++s) ASSERT_GT(inFront(before, s), 0u);
+  // Two hits give 1.7, a miss takes 0.4: four are not enough, the fifth is.
+  for (int view = 0; view < 4; ++view) {
+    EXPECT_EQ(mapper.add(wallScan(false)).deleted, 0u) << view;
+    EXPECT_EQ(inFront(mapper.map(), 0), inFront(before, 0));
+  }
+  EXPECT_GE(mapper.add(wallScan(false)).deleted, inFront(before, 0));
+  for (int s = 0; s < 3; ++s) EXPECT_EQ(inFront(mapper.map(), s), 0u) << s;
+}
+
+TEST(Forget, LeavesTheWallBehindWhole) {
+  OnlineMapper<3> mapper(wallOptions()), undisturbed(wallOptions());
+  for (int i = 0; i < 2; ++i) mapper.add(wallScan(true));
+  for (int i = 0; i < 8; ++i) {
+    mapper.add(wallScan(false));
+    undisturbed.add(wallScan(false));
+  }
+  for (int s = 0; s < 3; ++s) EXPECT_EQ(mapper.map().scale(s).keys, undisturbed.map().scale(s).keys) << s;
+}
+
+TEST(Forget, DeletesNothingWhereNothingMoves) {
+  OnlineOptions options = wallOptions();
+  options.look_back = 10;
+  OnlineMapper<3> mapper(options);
+  std::size_t deleted = 0, finest = 0;
+  for (const Scan& scan : hallScans(10)) {
+    deleted += mapper.add(scan).deleted;
+    finest = mapper.map().gaussianCount(0);
+  }
+  EXPECT_LE(deleted, finest / 1000);
+}
+
+TEST(Forget, LookingBackFindsWhatWasNotThereBefore) {
+  // The object comes late: later scans cannot disprove it, earlier ones can.
+  for (const int look_back : {0, 10}) {
+    OnlineOptions options = wallOptions();
+    options.look_back = look_back;
+    OnlineMapper<3> mapper(options);
+    for (int i = 0; i < 6; ++i) mapper.add(wallScan(false));
+    mapper.add(wallScan(true));
+    EXPECT_EQ(inFront(mapper.map(), 0) == 0, look_back > 0);
+  }
+}
+
+TEST(Forget, ARangeImageThatIsNoEvidenceDeletesNothing) {
+  OnlineMapper<3> mapper(wallOptions());
+  mapper.add(wallScan(true));
+  const std::size_t before = mapper.map().gaussianCount(0);
+  for (int i = 0; i < 20; ++i) mapper.add({});
+  EXPECT_EQ(mapper.map().gaussianCount(0), before);
+}
+
+TEST(Forget, BeyondTheRangeOfTheFinestScaleNothingIsLookedAt) {
+  OnlineOptions options = wallOptions();
+  options.max_ranges = {4.0};
+  OnlineMapper<3> mapper(options);
+  mapper.add(wallScan(true));
+  const std::size_t before = inFront(mapper.map(), 0);
+  for (int i = 0; i < 8; ++i) mapper.add(wallScan(false));
+  EXPECT_EQ(inFront(mapper.map(), 0), before);
+}
+
+TEST(Forget, SamplesDecideAsTheMeanDoes) {
+  OnlineOptions options = wallOptions();
+  options.samples = OccupancySamples::Random;
+  OnlineMapper<3> mapper(options), undisturbed(wallOptions());
+  mapper.add(wallScan(true));
+  for (int i = 0; i < 8; ++i) {
+    mapper.add(wallScan(false));
+    undisturbed.add(wallScan(false));
+  }
+  EXPECT_EQ(mapper.map().scale(0).keys, undisturbed.map().scale(0).keys);
+}
+
+TEST(Forget, SaysWhyEachClusterWasDeleted) {
+  std::vector<RemovedCluster<3>> removed;
+  OnlineMapper<3> mapper(wallOptions(), [&](const RemovedCluster<3>& cluster) { removed.push_back(cluster); });
+  mapper.add(wallScan(true));
+  for (int i = 0; i < 5; ++i) mapper.add(wallScan(false));
+  ASSERT_FALSE(removed.empty());
+  bool coarse = false;
+  for (const RemovedCluster<3>& cluster : removed) {
+    EXPECT_LT(cluster.gaussian.mean.x(), 8.0);
+    EXPECT_EQ(cluster.evidence.hits, 1u);
+    EXPECT_EQ(cluster.evidence.first_hit, 0u);
+    EXPECT_EQ(cluster.evidence.last_hit, 0u);
+    if (cluster.scale == 0) {
+      EXPECT_EQ(double(cluster.moments.count), cluster.gaussian.weight);
+    }
+    coarse |= cluster.scale == 2;
+  }
+  EXPECT_TRUE(coarse);
+}
+
+TEST(Forget, RestoringBringsTheMapBackToTheLastBit) {
+  std::vector<RemovedCluster<3>> removed;
+  OnlineMapper<3> mapper(wallOptions(), [&](const RemovedCluster<3>& cluster) { removed.push_back(cluster); });
+  OnlineOptions keep = wallOptions();
+  keep.forget = false;
+  OnlineMapper<3> keeper(keep);
+  for (int i = 0; i < 8; ++i) {
+    mapper.add(wallScan(i < 2));
+    keeper.add(wallScan(i < 2));
+  }
+  ASSERT_NE(mapper.map().scale(0).keys, keeper.map().scale(0).keys);
+  for (const RemovedCluster<3>& cluster : removed) {
+    if (cluster.scale == 0)
+      mapper.restore(cluster);
+    else
+      EXPECT_THROW(mapper.restore(cluster), std::invalid_argument);
+  }
+  EXPECT_TRUE(sameScale(mapper.map().scale(0), keeper.map().scale(0)));
+  EXPECT_DOUBLE_EQ(mapper.map().weight(2), keeper.map().weight(2));
+}
+
+TEST(Forget, MemoryStaysFlatWhenTheSameScansComeAgainAndAgain) {
+  OnlineOptions options = wallOptions();
+  options.look_back = 3;
+  OnlineMapper<3> mapper(options);
+  std::size_t early = 0;
+  for (int round = 0; round < 40; ++round) {
+    for (const int i : {0, 1, 2, 3, 4, 5, 6}) mapper.add(wallScan(i < 1));
+    if (round == 3) early = mapper.memoryBytes();
+  }
+  EXPECT_LE(mapper.memoryBytes(), early + early / 50);
+}
+
+TEST(Forget, ClustersThatLearnByThemselvesAreForgottenAtEveryScaleToo) {
+  OnlineOptions options = wallOptions();
+  options.learning_rate = LearningRate::Occupancy;
+  options.refine_every = 1;
+  options.refine_cells = 20;
+  OnlineMapper<3> mapper(options);
+  for (int i = 0; i < 2; ++i) mapper.add(wallScan(true));
+  for (int i = 0; i < 6; ++i) mapper.add(wallScan(false));
+  for (int s = 0; s < 3; ++s) EXPECT_EQ(inFront(mapper.map(), s), 0u) << s;
+}
+
+}  // namespace
+}  // namespace gaussmap

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "gaussmap/mapping/build.h"
+#include "gaussmap/online/online_mapper.h"
+#include "gaussmap/simulation/lidar.h"
+#include "gaussmap/simulation/simulation.h"
+
+namespace gaussmap::test {
+
+inline Scan asScan(const SimulatedScan& simulated) {
+  return {simulated.points, simulated.pose, 0};
+}
+
+/// Looks from the origin at a wall at x = 10.1, with or without a box in front of it at x = 5.1. No noise.
+inline Scan wallScan(bool with_box) {
+  Scene scene;
+  scene.rectangles.push_back({{10.1, -6.0, -2.0}, {0.0, 12.0, 0.0}, {0.0, 0.0, 4.0}});
+  if (with_box) scene.rectangles.push_back({{5.1, -0.5, -0.5}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}});
+  LidarOptions lidar;
+  lidar.rings = 40;
+  lidar.lowest_deg = -10.0;
+  lidar.highest_deg = 10.0;
+  lidar.columns = 720;
+  lidar.noise = 0.0;
+  return asScan(simulateScan(scene, Pose(), lidar));
+}
+
+inline OnlineOptions wallOptions() {
+  OnlineOptions options;
+  options.map = {0.2, 5, 3, 0.0};
+  options.look_back = 0;
+  options.refine_every = 0;
+  options.threads = 1;
+  return options;
+}
+
+/// A few scans of the hall, coarser than usual.
+inline std::vector<Scan> hallScans(int count) {
+  SimulationOptions how;
+  how.scans = count;
+  Simulation hall = makeSimulation(WorldName::Hall, how);
+  auto& lidar = std::get<LidarOptions>(hall.sensor);
+  lidar.columns = 450;
+  std::vector<Scan> scans;
+  for (std::size_t i = 0; i < hall.trajectory.size(); ++i) scans.push_back(asScan(simulateScan(hall, i)));
+  return scans;
+}
+
+inline std::vector<Vector<3>> inMap(const Scan& scan) {
+  std::vector<Vector<3>> points;
+  for (const Eigen::Vector3d& point : scan.points)
+    if (isReturn(point)) points.push_back(scan.pose.rotation.toRotationMatrix() * point + scan.pose.translation);
+  return points;
+}
+
+template <int D>
+bool sameScale(const MapScale<D>& a, const MapScale<D>& b) {
+  const auto same = [](const Gaussian<D>& x, const Gaussian<D>& y) {
+    return x.mean == y.mean && x.cov == y.cov && x.weight == y.weight;
+  };
+  return a.keys == b.keys && a.moments == b.moments && a.parent == b.parent && a.first_gaussian == b.first_gaussian &&
+         std::equal(a.gaussians.begin(), a.gaussians.end(), b.gaussians.begin(), b.gaussians.end(), same);
+}
+
+template <int D>
+bool sameMap(const GaussianMap<D>& a, const GaussianMap<D>& b) {
+  bool same = a.scales() == b.scales();
+  for (int s = 0; same && s < a.scales(); ++s) same = sameScale(a.scale(s), b.scale(s));
+  return same;
+}
+
+}  // namespace gaussmap::test
