@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gaussmap/pcl/range_images.h"
+
+#include <pcl/point_types.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace gaussmap {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+Eigen::Affine3f affineOf(const Pose& pose) {
+  Eigen::Affine3f affine = Eigen::Affine3f::Identity();
+  affine.linear() = pose.rotation.toRotationMatrix().cast<float>();
+  affine.translation() = pose.translation.cast<float>();
+  return affine;
+}
+
+}  // namespace
+
+pcl::RangeImage toPclRangeImage(const RangeImage& image, const Pose& sensor) {
+  const auto* const projection = std::get_if<SphericalProjection>(&image.projection());
+  if (!projection)
+    throw std::invalid_argument("the image of a camera is no pcl::RangeImage: that class has pixels of equal angles");
+  pcl::PointCloud<pcl::PointXYZ> cloud;
+  for (int row = 0; row < image.rows(); ++row)
+    for (int column = 0; column < image.columns(); ++column) {
+      if (image.at(row, column).empty()) continue;
+      const Eigen::Vector3d point = sensor.rotation * image.nearestPoint(row, column) + sensor.translation;
+      cloud.emplace_back(float(point.x()), float(point.y()), float(point.z()));
+    }
+  pcl::RangeImage result;
+  if (cloud.empty()) return result;
+  const auto width = static_cast<float>(2.0 * kPi / projection->columns);
+  const auto height =
+      static_cast<float>((projection->row_borders.back() - projection->row_borders.front()) / image.rows());
+  result.createFromPointCloud(cloud, width, height, float(2.0 * kPi), float(kPi), affineOf(sensor),
+                              pcl::RangeImage::LASER_FRAME, 0.0f, 0.0f, 0);
+  return result;
+}
+
+RangeImage fromPclRangeImage(const pcl::RangeImage& image, const Pose& sensor) {
+  const double width = image.getAngularResolutionX(), height = image.getAngularResolutionY();
+  if (image.points.empty() || !(width > 0.0) || !(height > 0.0))
+    throw std::invalid_argument("an empty pcl::RangeImage: it has " + std::to_string(image.points.size()) + " pixels");
+  SphericalProjection projection;
+  projection.columns = std::max(1, static_cast<int>(std::lround(2.0 * kPi / width)));
+  const int rows = std::max(1, static_cast<int>(std::lround(kPi / height)));
+  for (int row = 0; row <= rows; ++row) projection.row_borders.push_back(kPi * row / rows - 0.5 * kPi);
+  RangeImage result((Projection(projection)));
+  const Eigen::Matrix3d to_sensor = sensor.rotation.toRotationMatrix().transpose();
+  for (const pcl::PointWithRange& pixel : image.points)
+    if (std::isfinite(pixel.range) && pixel.range > 0.0f)
+      result.add(to_sensor * (pixel.getVector3fMap().cast<double>() - sensor.translation));
+  return result;
+}
+
+}  // namespace gaussmap
