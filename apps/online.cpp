@@ -20,7 +20,7 @@ const std::map<std::string, OccupancySamples> kSamples = {{"mean", OccupancySamp
 /// One line a scan.
 class StatisticsTable {
  public:
-  explicit StatisticsTable(int scales) {
+  explicit StatisticsTable(int scales) : scales_(static_cast<std::size_t>(scales)) {
     text_.imbue(std::locale::classic());
     text_ << "scan,file,points,cells_touched,cells_new,cells_tested,cells_visited,added,deleted,update_s,image_s,"
              "look_back_s,occupancy_s,forget_s,refine_s";
@@ -35,7 +35,10 @@ class StatisticsTable {
           << s.cells_tested << ',' << s.cells_visited << ',' << s.added << ',' << s.deleted << ',' << s.update_time
           << ',' << s.image_time << ',' << s.look_back_time << ',' << s.occupancy_time << ',' << s.forget_time << ','
           << s.refine_time;
-    for (std::size_t scale = 1; scale < s.errors.size(); ++scale) text_ << ',' << s.errors[scale];
+    for (std::size_t scale = 1; scale < scales_; ++scale) {
+      text_ << ',';
+      if (scale < s.errors.size()) text_ << s.errors[scale];  // else nothing was refined
+    }
     text_ << '\n';
   }
 
@@ -47,6 +50,7 @@ class StatisticsTable {
   }
 
  private:
+  std::size_t scales_;
   std::ostringstream text_;
 };
 
@@ -96,8 +100,10 @@ void addOnlineOptions(CLI::App& command, OnlineInput& input) {
   option(command.add_option("--refine-every", options.refine_every, "scans between two refinements, 0 = never"))
       ->check(CLI::Range(0, 1000000))
       ->capture_default_str();
-  option(command.add_option("--refine-cells", options.refine_cells, "clusters added to a scale at a time"))
-      ->check(CLI::Range(1, 1000000000))
+  option(
+      command.add_option("--refine-cells", options.refine_cells,
+                         "most clusters added to a scale at a time, 0 = as many as the budget allows (the paper: 4)"))
+      ->check(CLI::Range(0, 1000000000))
       ->capture_default_str();
   option(command.add_option("--stats", input.stats, "write what each scan did and how long it took (.csv)"));
   option(command.add_option("--removed", input.removed, "write what was forgotten, with the evidence (.pcd)"));

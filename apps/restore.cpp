@@ -40,7 +40,7 @@ void checkSums(const RemovedCluster<3>& one, const Grid<3>& grid, const std::str
   // Far coordinates are rounded; in a grid of another resolution the cell is somewhere else.
   if (!((from_sums - one.gaussian.mean).norm() <= 1e-3 * side) || grid.keyOf(from_sums) != one.key)
     throw FileError(path, name + " does not lie there in cells of " + Json(side).dump() +
-                             " m: it was deleted from a map of another resolution");
+                              " m: it was deleted from a map of another resolution");
 }
 
 /// The cells of the map and the clusters in the box. Counts the latter.
@@ -125,7 +125,8 @@ void addRestore(CLI::App& app) {
       "many Gaussians as they have. What is brought back twice counts twice.\n"
       "Example: gaussmap restore street.gmap removed.pcd -o whole.gmap --box -5 0 -1 5 20 3");
   command->add_option("map", options->map, "map (.gmap)")->required();
-  command->add_option("removed", options->removed, "deleted clusters, of pcd2map --online --removed (.pcd)")->required();
+  command->add_option("removed", options->removed, "deleted clusters, of pcd2map --online --removed (.pcd)")
+      ->required();
   addOutput(*command, options->output, "map file to write (.gmap)");
   command->add_option("--box", options->box, "only clusters whose mean lies in this box: x0 y0 z0 x1 y1 z1 [m]")
       ->expected(6)

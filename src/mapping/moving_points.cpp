@@ -39,7 +39,7 @@ struct MovingPoints::State {
     return map.find(map.grid().keyOf(in_map), 0);
   }
 
-  /// The points of shared cells from the scans that did not see the object.
+  /// The points of shared cells that hold still, from the scans that did not see the object.
   MomentGrid<3> stillPoints(const std::function<void(std::size_t)>& progress) const;
 };
 
@@ -96,8 +96,8 @@ MovingPoints::MovingPoints(std::vector<ScanSource> scans, const MovingPointOptio
   state.evidence = gatherEvidence(state.map, state.scans, input, report(MovingPointStep::Looking));
   state.moving = findMovingCells(state.map, state.evidence.cells, options.cells);
   state.shared = findSharedCells(state.map, state.moving, state.evidence.cells);
-  fitSurfaces(state.map, state.moving, state.stillPoints(report(MovingPointStep::Sharing)), options.shared,
-              input.threads, state.shared);
+  fitSurfaces(state.map, state.stillPoints(report(MovingPointStep::Sharing)), options.shared, input.threads,
+              state.shared);
 }
 
 MovingPoints::~MovingPoints() = default;

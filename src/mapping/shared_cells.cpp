@@ -65,8 +65,8 @@ SharedCells findSharedCells(const GaussianMap<3>& map, const std::vector<bool>& 
   return shared;
 }
 
-void fitSurfaces(const GaussianMap<3>& map, const std::vector<bool>& moving, const MomentGrid<3>& still,
-                 const SharedCellOptions& options, int threads, SharedCells& shared) {
+void fitSurfaces(const GaussianMap<3>& map, const MomentGrid<3>& still, const SharedCellOptions& options, int threads,
+                 SharedCells& shared) {
   const double side = map.grid().side(0);
   const std::int32_t reach = cellsFor(options.reach, side);
   std::unordered_map<std::size_t, CellMoments<3>> between;  // what is left of the shared cells
@@ -80,7 +80,6 @@ void fitSurfaces(const GaussianMap<3>& map, const std::vector<bool>& moving, con
     const CellKey<3> key = map.scale(0).keys[cell];
     Sums sums;
     const auto add = [&](std::size_t near) {
-      if (moving[near]) return;
       const CellMoments<3>* moments = &map.scale(0).moments[near];
       if (shared.count(near) > 0) {
         const auto found = between.find(near);

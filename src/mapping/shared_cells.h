@@ -34,8 +34,8 @@ SharedCells findSharedCells(const GaussianMap<3>& map, const std::vector<bool>& 
                             const std::vector<Evidence>& evidence);
 
 /// Fits the surfaces: from the points in cells that neither hold nor touch an object, and from `still`, the points of
-/// the shared ones that were measured while the object was elsewhere; the nearest cells that make a flat piece.
-void fitSurfaces(const GaussianMap<3>& map, const std::vector<bool>& moving, const MomentGrid<3>& still,
-                 const SharedCellOptions& options, int threads, SharedCells& shared);
+/// the cells beside one that were measured while it was elsewhere; the nearest cells that make a flat piece.
+void fitSurfaces(const GaussianMap<3>& map, const MomentGrid<3>& still, const SharedCellOptions& options, int threads,
+                 SharedCells& shared);
 
 }  // namespace gaussmap

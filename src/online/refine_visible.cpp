@@ -174,8 +174,9 @@ void refineVisible(OnlineCells<D>& cells, const OnlineScan<D>& scan, const Onlin
 
     std::priority_queue<Entry> needy = queueOf(cells, scale, &OnlineCell<D>::need, 1.0), rich;
     const double most = std::floor(options.budget * double(cells.size(scale)));
+    const std::size_t limit = options.refine_cells > 0 ? options.refine_cells : cells.size(scale - 1);
     std::size_t given = 0;
-    for (; given < options.refine_cells && !needy.empty(); ++given) {
+    for (; given < limit && !needy.empty(); ++given) {
       const auto next = static_cast<std::uint32_t>(-needy.top().second);
       const double need = needy.top().first;
       if (double(cells.clusterCount(scale)) + 1.0 > most) {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "gaussmap/gaussian/random.h"
 #include "gaussmap/io/error.h"
 #include "gaussmap/io/pcd_writer.h"
 #include "gaussmap/simulation/lidar.h"
@@ -146,6 +147,27 @@ TEST_F(FindMovingPoints, TellsTheBoxFromTheFloorBySurfacesInTheCellsTheyShare) {
   EXPECT_LT(shareKept(), 0.02);
   options.shared.flatness = 0.0;  // no surface is so flat
   EXPECT_GT(shareKept(), 0.8);
+}
+
+TEST_F(FindMovingPoints, KeepsInSharedCellsWhatIsThereBeforeAndAfterTheBox) {
+  auto scans = driveBy();
+  const Vector3d above_the_floor(1.52, -0.3, kFloor + 0.09);  // behind the side of the box at seconds 3 and 4
+  for (SimulatedScan& scan : scans) scan.points.push_back(rounded(above_the_floor - scan.pose.translation));
+  const Flags flags = flagsOf(MovingPoints(write(scans)));
+  for (const std::size_t i : {0u, 1u, 7u, 8u}) EXPECT_FALSE(flags[i].back()) << i;
+  for (const std::size_t i : {3u, 4u}) EXPECT_TRUE(flags[i].back()) << i;
+}
+
+TEST_F(FindMovingPoints, AsksAFloorHowRoughItIs) {
+  auto scans = driveBy();
+  Random random(5);
+  for (SimulatedScan& scan : scans)
+    for (std::size_t p = 0; p < scan.points.size(); ++p)
+      if (scan.labels[p] == SurfaceLabel::Static && scan.truth[p].z() < kFloor + 0.01)
+        scan.points[p].z() += 0.015 * random.normal();
+  const Counts counts = countsOf(scans, flagsOf(MovingPoints(write(scans))));
+  EXPECT_LT(counts.under_lost + counts.elsewhere_lost, 6u);  // with two standard deviations 22
+  EXPECT_LT(counts.box_kept, counts.box / 20);
 }
 
 TEST_F(FindMovingPoints, FindsNothingWhereNothingMoves) {

@@ -140,6 +140,38 @@ TEST_F(GatherEvidence, LooksThroughTheProjectionThatIsGiven) {
   }
 }
 
+TEST_F(GatherEvidence, TakesAPointInTheCellForAHitWhateverOtherBeamsDo) {
+  // A wall 5.05 m away, then 5.95 m: in the same cells of 1 m, but 0.9 m behind the mean of many earlier points.
+  std::vector<ScanSource> sources;
+  for (const double distance : {5.05, 5.05, 5.05, 5.05, 5.05, 5.05, 5.05, 5.05, 5.05, 5.95}) {
+    std::vector<Vector<3>> points;
+    for (double y = -2.0; y < 2.0; y += 0.05)
+      for (double z = -2.0; z < 2.0; z += 0.05) points.push_back(distance * Vector3d(1.0, 0.2 * y, 0.2 * z));
+    sources.push_back(write(points, {}));
+  }
+  const GaussianMap<3> map =
+      build<3>(accumulateScans(sources, {1.0, ScanFrame::Sensor, 100.0, 1}).moments, MapOptions{1.0, 6, 3, 0.0});
+  ScanEvidenceOptions options;
+  options.projection = test::lidar(40, -25, 25, 360);
+  const ScanEvidence evidence = gatherEvidence(map, sources, options);
+  const RangeImage last(*options.projection, readScans({sources.back()}, {}));
+  std::size_t decided = 0;
+  for (std::size_t cell = 0; cell < map.cellCount(0); ++cell) {
+    if (evidence.cells[cell].last_hit != 9) continue;
+    EXPECT_EQ(evidence.cells[cell].misses, 0u);
+    decided += look(last, map.gaussian(cell, 0).mean) == Sight::PassedThrough;
+  }
+  EXPECT_GT(decided, 0u);
+}
+
+TEST_F(GatherEvidence, AsksForTheToleranceThatIsGiven) {
+  const auto sources = write(roomScans());
+  const GaussianMap<3> map = mapOf(sources);
+  ScanEvidenceOptions options;
+  options.sight.tolerance = 8.0;  // no wall is so far behind the box
+  for (const Evidence& said : gatherEvidence(map, sources, options).cells) ASSERT_EQ(said.misses, 0u);
+}
+
 TEST_F(GatherEvidence, FreesTheWayOfBeamsThatEndBeyondTheMaximumRange) {
   const auto scans = roomScans();
   const auto sources = write(scans);
@@ -240,6 +272,12 @@ TEST_F(GatherEvidence, GivesTheSameForAnyNumberOfThreads) {
   const ScanEvidence one = gatherEvidence(map, sources, options, [&](std::size_t count) { done.push_back(count); });
   EXPECT_TRUE(std::is_sorted(done.begin(), done.end()));
   EXPECT_EQ(done.back(), 35u);
+  for (std::uint32_t i = 0; i < 35; ++i)
+    for (const SurfaceLabel label : {SurfaceLabel::Static, SurfaceLabel::Moving})
+      for (const std::size_t cell : cellsOf(map, scans[i], label)) {
+        ASSERT_LE(one.cells[cell].first_hit, i);
+        ASSERT_GE(one.cells[cell].last_hit, i);
+      }
   std::uint32_t misses = 0;
   for (const int threads : {2, 0}) {
     options.threads = threads;

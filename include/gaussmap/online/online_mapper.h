@@ -49,7 +49,8 @@ struct OnlineOptions {
   MovingCellOptions objects;  ///< what is deleted with a freed cell; its `occupancy` and `min_points` are not used
 
   int refine_every = 10;         ///< scans; 0 = never
-  std::size_t refine_cells = 4;  ///< p, clusters added to a scale at a time (the paper's 4 suit a small map)
+  std::size_t refine_cells = 0;  ///< p, most clusters added to a scale at a time; 0: as many as the budget allows (with
+                                 ///< the paper's 4 a drive of 20 scans ends at a third of its budget)
   double budget = 3.0;           ///< most Gaussians of a coarse scale, as a multiple of its occupied cells, >= 1
   RefineMethod method = RefineMethod::Agglomerate;
   int threads = 0;  ///< 0 = all; never shows in the result
@@ -72,7 +73,7 @@ struct OnlineStatistics {
   std::size_t points = 0;         ///< counted
   std::size_t cells_touched = 0;  ///< finest cells with points
   std::size_t cells_new = 0;      ///< of them, those not seen before
-  std::size_t cells_tested = 0;   ///< of all scales, what culling looked at
+  std::size_t cells_tested = 0;   ///< of the coarser scales, what culling looked at
   std::size_t cells_visited = 0;  ///< of the finest scale, what it left to look at
   std::size_t deleted = 0;        ///< clusters, of all scales
   std::size_t added = 0;          ///< clusters, by refinement

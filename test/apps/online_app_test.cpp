@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// gaussmap pcd2map --online and gaussmap restore through the real program.
+#include <cmath>
+#include <sstream>
+
+#include "apps/app_fixture.h"
+#include "apps/passing_post.h"
+#include "gaussmap/io/removed_pcd.h"
+
+namespace gaussmap::test {
+namespace {
+
+class OnlineApp : public AppTest {
+ protected:
+  static void SetUpTestSuite() {
+    scene_ = std::make_unique<TemporaryDirectory>();
+    writePostScans(*scene_, "scans");
+    ASSERT_EQ(runApp(online("map.gmap",
+                            {"--refine-every", "4", "--removed", scene("removed.pcd"), "--stats", scene("stats.csv")}))
+                  .code,
+              0);
+    ASSERT_EQ(runApp(online("keep.gmap", {"--keep"})).code, 0);
+  }
+  static void TearDownTestSuite() { scene_.reset(); }
+
+  static std::string scene(const std::string& name) { return (scene_->path() / name).string(); }
+  /// pcd2map --online of the scene to a file of the scene.
+  static std::vector<std::string> online(const std::string& name, const std::vector<std::string>& more) {
+    return onlineTo(scene(name), more);
+  }
+  static std::vector<std::string> onlineTo(const std::string& path, const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"pcd2map", "--online", scene("scans"), "-o", path, "--resolution", "0.2"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+
+  static std::size_t deletedFinest() {
+    std::size_t finest = 0;
+    for (const RemovedCluster<3>& one : readRemoved(scene("removed.pcd"))) finest += one.scale == 0;
+    return finest;
+  }
+  /// The finest scale as it is in the file, exported.
+  std::string finestOf(const std::string& map) const {
+    succeed({"export", map, own("finest.pcd"), "--scale", "0", "--force"});
+    return contentsOf(own("finest.pcd"));
+  }
+
+ private:
+  static inline std::unique_ptr<TemporaryDirectory> scene_;
+};
+
+TEST_F(OnlineApp, MakesAMapThatEveryCommandReads) {
+  const Json info = infoOf(scene("map.gmap")), keep = infoOf(scene("keep.gmap"));
+  EXPECT_EQ(info["takes_scans"], true);
+  EXPECT_EQ(info["compressed"], false);
+  EXPECT_EQ(info["scales"].size(), 3u);
+  EXPECT_LT(info["scales"][0]["weight"], keep["scales"][0]["weight"]);
+  EXPECT_EQ(keep["scales"][0]["weight"], 69120.0);
+  const Json& step = info["metadata"]["history"].back();
+  EXPECT_EQ(step["command"], "pcd2map");
+  EXPECT_EQ(step["online"], true);
+  EXPECT_EQ(step["deleted"].get<std::size_t>(), readRemoved(scene("removed.pcd")).size());
+}
+
+TEST_F(OnlineApp, KeepsTheFinestScaleOfAMapBuiltAtOnce) {
+  succeed({"pcd2map", scene("scans"), "-o", own("at_once.gmap"), "--resolution", "0.2"});
+  EXPECT_EQ(finestOf(scene("keep.gmap")), finestOf(own("at_once.gmap")));
+}
+
+TEST_F(OnlineApp, SaysWhatEachScanDid) {
+  std::istringstream table(contentsOf(scene("stats.csv")));
+  std::string line;
+  std::getline(table, line);
+  EXPECT_EQ(line.find("scan,file,points,cells_touched,"), 0u) << line;
+  const auto commas = std::count(line.begin(), line.end(), ',');
+  int scans = 0;
+  for (; std::getline(table, line); ++scans) {
+    EXPECT_EQ(line.find(std::to_string(scans) + ",\"scan" + std::to_string(scans) + ".pcd\",8640,"), 0u) << line;
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','), commas) << line;
+  }
+  EXPECT_EQ(scans, 8);
+}
+
+TEST_F(OnlineApp, GivesBackWhatItHasForgotten) {
+  ASSERT_GT(deletedFinest(), 10u);
+  EXPECT_NE(finestOf(scene("map.gmap")), finestOf(scene("keep.gmap")));
+  const Json said =
+      Json::parse(succeed({"restore", scene("map.gmap"), scene("removed.pcd"), "-o", own("whole.gmap"), "--json"}));
+  EXPECT_EQ(finestOf(own("whole.gmap")), finestOf(scene("keep.gmap")));
+  EXPECT_EQ(said["clusters"].get<std::size_t>(), deletedFinest());
+  const Json before = infoOf(scene("map.gmap")), whole = infoOf(own("whole.gmap"));
+  EXPECT_EQ(said["points"].get<double>(), 69120.0 - before["scales"][0]["weight"].get<double>());
+  for (std::size_t s = 0; s < 3; ++s) EXPECT_EQ(whole["scales"][s]["weight"], 69120.0);
+  for (std::size_t s = 1; s < 3; ++s) {
+    EXPECT_GE(whole["scales"][s]["gaussians"], before["scales"][s]["gaussians"]);
+    EXPECT_GE(whole["scales"][s]["gaussians"], whole["scales"][s]["cells"]);
+  }
+  EXPECT_EQ(whole["takes_scans"], true);
+  const Json& history = whole["metadata"]["history"];
+  EXPECT_EQ(history.size(), 2u);
+  EXPECT_EQ(history.back()["command"], "restore");
+  EXPECT_EQ(history.back()["clusters"].get<std::size_t>(), deletedFinest());
+}
+
+TEST_F(OnlineApp, GivesARefinedMapAsManyGaussiansBack) {
+  succeed({"refine", scene("map.gmap"), "-o", own("fine.gmap"), "--budget", "4"});
+  ASSERT_TRUE(infoOf(own("fine.gmap"))["metadata"].contains("error_curves"));
+  const std::string said = succeed({"restore", own("fine.gmap"), scene("removed.pcd"), "-o", own("whole.gmap")});
+  EXPECT_NE(said.find("whole.gmap: " + std::to_string(deletedFinest()) + " clusters of "), std::string::npos) << said;
+  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1);
+  const Json fine = infoOf(own("fine.gmap")), whole = infoOf(own("whole.gmap"));
+  for (std::size_t s = 1; s < 3; ++s) {
+    EXPECT_GT(fine["scales"][s]["gaussians"], fine["scales"][s]["cells"]);
+    EXPECT_EQ(whole["scales"][s]["gaussians"], fine["scales"][s]["gaussians"]);
+  }
+  EXPECT_FALSE(whole["metadata"].contains("error_curves"));  // of the map as it was
+}
+
+TEST_F(OnlineApp, GivesBackWhatLiesInABox) {
+  // The post stands at (5, 0): its halves of either side of y = 0 make up the whole.
+  const auto restored = [&](const std::string& name, const std::vector<std::string>& box) {
+    std::vector<std::string> words = {"restore", scene("map.gmap"), scene("removed.pcd"), "-o", own(name), "--json",
+                                      "--box"};
+    words.insert(words.end(), box.begin(), box.end());
+    return Json::parse(succeed(words));
+  };
+  const Json left = restored("left.gmap", {"-100", "-100", "-100", "100", "-1e-9", "100"});
+  const Json right = restored("right.gmap", {"-100", "0", "-100", "100", "100", "100"});
+  EXPECT_GT(left["clusters"], 0);
+  EXPECT_GT(right["clusters"], 0);
+  EXPECT_EQ(left["clusters"].get<std::size_t>() + right["clusters"].get<std::size_t>(), deletedFinest());
+  EXPECT_EQ(infoOf(own("left.gmap"))["metadata"]["history"].back()["box"][4], -1e-9);
+  EXPECT_EQ(restored("none.gmap", {"50", "50", "50", "60", "60", "60"})["clusters"], 0);
+  EXPECT_EQ(finestOf(own("none.gmap")), finestOf(scene("map.gmap")));
+  succeed({"restore", own("left.gmap"), scene("removed.pcd"), "-o", own("both.gmap"), "--box", "-100", "0", "-100",
+           "100", "100", "100"});
+  EXPECT_EQ(finestOf(own("both.gmap")), finestOf(scene("keep.gmap")));
+}
+
+TEST_F(OnlineApp, WritesTheSameBytesOnAnyNumberOfThreads) {
+  for (const std::string threads : {"1", "2"}) {
+    succeed(onlineTo(own(threads + ".gmap"),
+                     {"--threads", threads, "--refine-every", "3", "--removed", own(threads + ".pcd")}));
+    succeed({"restore", own(threads + ".gmap"), own(threads + ".pcd"), "-o", own("r" + threads + ".gmap"), "--threads",
+             threads});
+  }
+  EXPECT_EQ(contentsOf(own("1.gmap")), contentsOf(own("2.gmap")));
+  EXPECT_EQ(contentsOf(own("1.pcd")), contentsOf(own("2.pcd")));
+  EXPECT_EQ(contentsOf(own("r1.gmap")), contentsOf(own("r2.gmap")));
+}
+
+TEST_F(OnlineApp, LearnsByOccupancyButCannotGiveThatBack) {
+  succeed(onlineTo(own("map.gmap"), {"--learning-rate", "occupancy", "--removed", own("removed.pcd")}));
+  EXPECT_EQ(infoOf(own("map.gmap"))["takes_scans"], false);
+  EXPECT_FALSE(readRemoved(own("removed.pcd")).empty());
+  expectDataError("Gaussians only", {"restore", own("map.gmap"), scene("removed.pcd"), "-o", own("x.gmap")});
+  expectDataError("no exact sums", {"restore", scene("map.gmap"), own("removed.pcd"), "-o", own("x.gmap")});
+}
+
+TEST_F(OnlineApp, RestoresOnlyWhatFitsTheMap) {
+  const std::string removed = scene("removed.pcd"), out = own("x.gmap");
+  succeed({"pcd2map", scene("scans"), "-o", own("finer.gmap"), "--resolution", "0.1", "--budget", "1"});
+  expectDataError("another resolution", {"restore", own("finer.gmap"), removed, "-o", out});
+  succeed({"compress", scene("map.gmap"), "-o", own("small.gmap"), "--max-error", "1"});
+  expectDataError("is compressed", {"restore", own("small.gmap"), removed, "-o", out});
+  expectDataError("no cloud of deleted clusters",
+                  {"restore", scene("map.gmap"), scene("scans") + "/scan0.pcd", "-o", out});
+  expectDataError("does not exist", {"restore", own("none.gmap"), removed, "-o", out});
+  std::vector<RemovedCluster<3>> clusters = readRemoved(removed);
+  clusters.front().gaussian.mean.x() += 0.05;
+  writeRemoved(own("moved.pcd"), clusters);
+  expectDataError("does not lie there", {"restore", scene("map.gmap"), own("moved.pcd"), "-o", out});
+  clusters.assign(1, readRemoved(removed).front());
+  clusters[0].moments.count = (std::int64_t{1} << 33) - 1;
+  clusters[0].moments.sum = {};
+  clusters[0].gaussian.mean = Grid<3>({0.2}).centre(clusters[0].key, 0);
+  writeRemoved(own("many.pcd"), clusters);
+  expectDataError("too many points", {"restore", scene("map.gmap"), own("many.pcd"), "-o", out});
+}
+
+TEST_F(OnlineApp, SaysWhatIsWrongWithTheOptionsOfRestore) {
+  const std::string map = scene("map.gmap"), removed = scene("removed.pcd"), out = own("x.gmap");
+  expectUsageError("--output", {"restore", map, removed});
+  expectUsageError("removed", {"restore", map, "-o", out});
+  expectUsageError("low corner first", {"restore", map, removed, "-o", out, "--box", "1", "0", "0", "0", "9", "9"});
+  expectUsageError("--box", {"restore", map, removed, "-o", out, "--box", "0", "0", "0", "9", "9"});
+  expectUsageError("not in the range", {"restore", map, removed, "-o", out, "--box", "0", "0", "nan", "9", "9", "9"});
+  expectUsageError("destroy the input", {"restore", map, removed, "-o", map, "--force"});
+  expectUsageError("destroy the input", {"restore", map, removed, "-o", removed, "--force"});
+  succeed({"restore", map, removed, "-o", out});
+  expectUsageError("exists already", {"restore", map, removed, "-o", out});
+  succeed({"restore", map, removed, "-o", out, "--force"});
+}
+
+TEST_F(OnlineApp, SaysWhatIsWrongWithItsOptions) {
+  const std::string out = own("x.gmap"), file = own("file");
+  const std::vector<std::vector<std::string>> without = {{"--learning-rate", "occupancy"},
+                                                         {"--occupancy-every", "2"},
+                                                         {"--occupancy-samples", "mean"},
+                                                         {"--look-back", "3"},
+                                                         {"--keep"},
+                                                         {"--no-return-is-free", "5"},
+                                                         {"--max-ranges", "5"},
+                                                         {"--refine-every", "2"},
+                                                         {"--refine-cells", "2"},
+                                                         {"--stats", file},
+                                                         {"--removed", file}};
+  for (const std::vector<std::string>& option : without) {
+    std::vector<std::string> words = {"pcd2map", scene("scans"), "-o", out};
+    words.insert(words.end(), option.begin(), option.end());
+    expectUsageError("--online", words);
+  }
+  const std::vector<std::vector<std::string>> bad = {
+      {"--learning-rate", "fast"}, {"--occupancy-every", "0"},   {"--occupancy-samples", "all"},
+      {"--look-back", "-1"},       {"--no-return-is-free", "0"}, {"--no-return-is-free", "nan"},
+      {"--max-ranges", "5,-1"},    {"--refine-every", "-1"},     {"--refine-cells", "-1"}};
+  for (const std::vector<std::string>& option : bad) expectUsageError(option[0], onlineTo(out, option));
+  for (const std::vector<std::string>& limit : std::vector<std::vector<std::string>>{
+           {"--max-gaussians", "100000"}, {"--max-bytes", "1M"}, {"--max-error", "1"}, {"--cost", "runnalls"}})
+    expectUsageError("--online", onlineTo(out, limit));
+}
+
+TEST_F(OnlineApp, NeverWritesOneFileOverAnother) {
+  const std::string out = own("x.gmap");
+  expectUsageError("another output", onlineTo(out, {"--stats", out}));
+  expectUsageError("another output", onlineTo(out, {"--stats", own("a"), "--removed", own("./a")}));
+  expectUsageError("destroy the input", onlineTo(out, {"--removed", scene("scans") + "/scan0.pcd", "--force"}));
+  directory_.write("a", "mine");
+  expectUsageError("exists already", onlineTo(out, {"--stats", own("a")}));
+  expectUsageError("exists already", onlineTo(out, {"--removed", own("a")}));
+  succeed(onlineTo(out, {"--stats", own("a"), "--force"}));
+  EXPECT_NE(contentsOf(own("a")), "mine");
+}
+
+TEST_F(OnlineApp, WritesNothingWithoutPoints) {
+  const std::string none = directory_.write("none.pcd", xyzHeader(1, "ascii") + "nan nan nan\n").string();
+  expectDataError("none is usable", {"pcd2map", "--online", none, "-o", own("x.gmap"), "--stats", own("s.csv"),
+                                     "--removed", own("r.pcd")});
+}
+
+TEST_F(OnlineApp, LeavesOutWhatIsTooFar) {
+  const Json said = Json::parse(succeed(onlineTo(own("near.gmap"), {"--max-range", "8", "--keep", "--json"})));
+  const Json& points = said["points"];
+  EXPECT_EQ(points["read"], 69120);
+  EXPECT_GT(points["beyond_range"], 10000);
+  EXPECT_EQ(points["accepted"].get<int>() + points["beyond_range"].get<int>(), 69120);
+  EXPECT_EQ(infoOf(own("near.gmap"))["scales"][0]["weight"], points["accepted"].get<double>());
+}
+
+}  // namespace
+}  // namespace gaussmap::test
