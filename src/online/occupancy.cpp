@@ -134,8 +134,9 @@ void count(OnlineCells<D>& cells, const std::vector<Question>& questions, const 
 }  // namespace
 
 template <int D>
-void countHits(OnlineCells<D>& cells, const OnlineScan<D>& scan, const OnlineOptions& options) {
-  for (const std::uint32_t finest : scan.touched) {
+void countHits(OnlineCells<D>& cells, const OnlineScan<D>& scan, const std::vector<std::uint32_t>& touched,
+               const OnlineOptions& options) {
+  for (const std::uint32_t finest : touched) {
     std::uint32_t cell = finest, cluster = 0;
     for (int scale = 0; scale < cells.scales(); ++scale) {
       OnlineCluster<D>& at = cells.cell(cell, scale).clusters[cluster];
@@ -186,7 +187,8 @@ void countMisses(OnlineCells<D>& cells, OnlineScan<D>& scan, const View& view, c
 }
 
 #define GAUSSMAP_INSTANTIATE(D)                                                                              \
-  template void countHits<D>(OnlineCells<D>&, const OnlineScan<D>&, const OnlineOptions&);                   \
+  template void countHits<D>(OnlineCells<D>&, const OnlineScan<D>&, const std::vector<std::uint32_t>&,       \
+                             const OnlineOptions&);                                                          \
   template void lookBack<D>(OnlineCells<D>&, OnlineScan<D>&, const std::deque<View>&, const OnlineOptions&); \
   template void countMisses<D>(OnlineCells<D>&, OnlineScan<D>&, const View&, const OnlineOptions&, OnlineStatistics&);
 GAUSSMAP_INSTANTIATE(2)

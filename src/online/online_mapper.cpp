@@ -134,7 +134,7 @@ OnlineStatistics OnlineMapper<D>::add(const Scan& scan) {
   statistics.update_time = watch.lap();
 
   const bool look_around = now.number % static_cast<std::uint32_t>(options.occupancy_every) == 0;
-  if (look_around) countHits(state.cells, now, options);
+  countHits(state.cells, now, look_around ? now.touched : now.new_cells, options);
   std::optional<RangeImage> image;
   if (look_around || options.look_back > 0) image = state.imageOf(scan, now.points.size());
   if (image) {

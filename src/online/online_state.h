@@ -60,9 +60,10 @@ void restoreCell(OnlineCells<D>& cells, const RemovedCluster<D>& removed, const 
 template <int D>
 void lookBack(OnlineCells<D>& cells, OnlineScan<D>& scan, const std::deque<View>& views, const OnlineOptions& options);
 
-/// Every cluster with a point of the scan under it is hit.
+/// Every cluster with one of these finest cells under it is hit.
 template <int D>
-void countHits(OnlineCells<D>& cells, const OnlineScan<D>& scan, const OnlineOptions& options);
+void countHits(OnlineCells<D>& cells, const OnlineScan<D>& scan, const std::vector<std::uint32_t>& touched,
+               const OnlineOptions& options);
 
 /// Misses of all clusters that the scan sees and did not hit, Yguel 2009, sec. 4.1 and 4.2.
 template <int D>

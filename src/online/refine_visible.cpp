@@ -123,6 +123,16 @@ void changeParts(OnlineCells<D>& cells, std::uint32_t i, int scale, int by) {
   noteGains(cells.cell(i, scale), dendrogram);
 }
 
+/// Takes a cluster from the cell that it gained least; returns the cell.
+template <int D>
+std::uint32_t takeOne(OnlineCells<D>& cells, int scale, std::priority_queue<Entry>& rich) {
+  const auto from = static_cast<std::uint32_t>(-rich.top().second);
+  rich.pop();
+  changeParts(cells, from, scale, -1);
+  if (cells.cell(from, scale).spare > 0.0) rich.emplace(-cells.cell(from, scale).spare, -std::int64_t{from});
+  return from;
+}
+
 template <int D>
 void insertOne(OnlineCells<D>& cells, std::uint32_t i, int scale) {
   const KLClustering<D> found = insertCluster(cells.dataUnder(i, scale), referencesOf(cells.cell(i, scale)));
@@ -174,6 +184,11 @@ void refineVisible(OnlineCells<D>& cells, const OnlineScan<D>& scan, const Onlin
 
     std::priority_queue<Entry> needy = queueOf(cells, scale, &OnlineCell<D>::need, 1.0), rich;
     const double most = std::floor(options.budget * double(cells.size(scale)));
+    if (options.method == RefineMethod::Agglomerate && double(cells.clusterCount(scale)) > most) {
+      // Cells have been forgotten, and the budget shrank with them.
+      rich = queueOf(cells, scale, &OnlineCell<D>::spare, -1.0);
+      while (!rich.empty() && double(cells.clusterCount(scale)) > most) takeOne(cells, scale, rich);
+    }
     const std::size_t limit = options.refine_cells > 0 ? options.refine_cells : cells.size(scale - 1);
     std::size_t given = 0;
     for (; given < limit && !needy.empty(); ++given) {
@@ -184,11 +199,7 @@ void refineVisible(OnlineCells<D>& cells, const OnlineScan<D>& scan, const Onlin
         if (options.method == RefineMethod::Insert) break;
         if (rich.empty()) rich = queueOf(cells, scale, &OnlineCell<D>::spare, -1.0);
         if (rich.empty() || !(need > -rich.top().first)) break;
-        const auto from = static_cast<std::uint32_t>(-rich.top().second);
-        rich.pop();
-        changeParts(cells, from, scale, -1);
-        if (cells.cell(from, scale).spare > 0.0) rich.emplace(-cells.cell(from, scale).spare, -std::int64_t{from});
-        if (from == next) break;  // nothing left to gain
+        if (takeOne(cells, scale, rich) == next) break;  // nothing left to gain
       }
       needy.pop();
       if (options.method == RefineMethod::Insert) {

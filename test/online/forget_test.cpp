@@ -55,6 +55,34 @@ TEST(Forget, DeletesNothingWhereNothingMoves) {
   EXPECT_LE(deleted, finest / 1000);
 }
 
+TEST(Forget, ACellThatIsNewBetweenTwoLooksCountsAsHit) {
+  OnlineOptions options = wallOptions();
+  options.occupancy_every = 3;
+  options.look_back = 10;
+  OnlineMapper<3> mapper(options);
+  mapper.add(wallScan(false));
+  mapper.add(wallScan(true));  // not looked around, but looked back: one hit, one miss
+  EXPECT_GT(inFront(mapper.map(), 0), 0u);
+}
+
+TEST(Forget, TheBudgetShrinksWithTheMap) {
+  // Two boxes in one coarse cell; one of them leaves, and with it a cluster of the cell.
+  for (const double budget : {1.2, 1.5, 2.0, 3.0}) {
+    OnlineOptions options = wallOptions();
+    options.refine_every = 1;
+    options.budget = budget;
+    OnlineMapper<3> mapper(options);
+    for (int i = 0; i < 16; ++i) {
+      std::vector<double> boxes = {2.4};
+      if (i < 2) boxes = {0.3, 1.35, 2.4, 3.45};
+      mapper.add(boxScan(boxes));
+      const GaussianMap<3> map = mapper.map();
+      for (int s = 1; s < 3; ++s)
+        EXPECT_LE(double(map.gaussianCount(s)), budget * double(map.cellCount(s))) << i << ", scale " << s;
+    }
+  }
+}
+
 TEST(Forget, LookingBackFindsWhatWasNotThereBefore) {
   // The object comes late: later scans cannot disprove it, earlier ones can.
   for (const int look_back : {0, 10}) {

@@ -51,7 +51,7 @@ struct OnlineOptions {
   int refine_every = 10;         ///< scans; 0 = never
   std::size_t refine_cells = 0;  ///< p, most clusters added to a scale at a time; 0: as many as the budget allows (with
                                  ///< the paper's 4 a drive of 20 scans ends at a third of its budget)
-  double budget = 3.0;           ///< most Gaussians of a coarse scale, as a multiple of its occupied cells, >= 1
+  double budget = 3.0;  ///< most Gaussians of a coarse scale after a refinement, as a multiple of its cells, >= 1
   RefineMethod method = RefineMethod::Agglomerate;
   int threads = 0;  ///< 0 = all; never shows in the result
 };
