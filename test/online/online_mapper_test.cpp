@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "gaussmap/evaluation/hausdorff.h"
 #include "online/online_scenes.h"
 
 namespace gaussmap {
@@ -77,6 +78,35 @@ TEST(OnlineMapper, HoldsEveryPointAtEveryScaleAndNeverMoreGaussiansThanTheBudget
     double weight = 0.0;
     for (const std::size_t child : map.childrenOf(i, 1)) weight += map.localGaussian(child, 0).weight;
     EXPECT_NEAR(map.localGaussian(i, 1).weight, weight, 1e-9);
+  }
+}
+
+TEST(OnlineMapper, EndsAsNearToThePointsAsTheBatchMapOfTheSameSize) {
+  OnlineOptions options;
+  options.map = {0.2, 10, 3, 0.0};
+  options.forget = false;
+  options.refine_every = 1;
+  OnlineMapper<3> mapper(options);
+  std::vector<Vector<3>> points;
+  MomentGrid<3> all(0.2);
+  for (const Scan& scan : hallScans(10)) {
+    mapper.add(scan);
+    for (const Vector<3>& point : inMap(scan)) points.push_back(point);
+  }
+  all.addPoints(points);
+  const GaussianMap<3> online = mapper.map();
+  RefineOptions same_size;
+  for (int s = 1; s < 3; ++s) same_size.max_gaussians[s] = online.gaussianCount(s);
+  const GaussianMap<3> batch = refine(build<3>(all, options.map), same_size);
+  const Reference truth(points);
+  for (int s = 1; s < 3; ++s) {
+    EXPECT_EQ(online.gaussianCount(s), batch.gaussianCount(s));
+    SampleOptions samples;
+    samples.samples = 20000;
+    const DistanceSummary ours = truth.compare(online, s, samples).all.forward;
+    const DistanceSummary theirs = truth.compare(batch, s, samples).all.forward;
+    EXPECT_LE(ours.q95, 1.05 * theirs.q95) << "scale " << s;
+    EXPECT_LE(ours.mean, 1.05 * theirs.mean) << "scale " << s;
   }
 }
 
