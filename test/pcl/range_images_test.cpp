@@ -12,6 +12,14 @@
 namespace gaussmap {
 namespace {
 
+/// Eigen allocates otherwise under the address sanitizer: memory of PCL's library, which is built without, cannot be
+/// freed here then.
+#ifdef __SANITIZE_ADDRESS__
+constexpr bool kMixedAllocators = true;
+#else
+constexpr bool kMixedAllocators = false;
+#endif
+
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
 Pose somePose() {
@@ -36,6 +44,7 @@ RangeImage wallImage() {
 }
 
 TEST(RangeImages, ReachPclWithTheirRangesAndPlaces) {
+  if (kMixedAllocators) GTEST_SKIP() << "PCL's library is built without the sanitizer";
   const Pose pose = somePose();
   const pcl::RangeImage pcl_image = toPclRangeImage(wallImage(), pose);
   std::size_t seen = 0;
@@ -51,6 +60,7 @@ TEST(RangeImages, ReachPclWithTheirRangesAndPlaces) {
 }
 
 TEST(RangeImages, ComeBackFromPclAndSeeTheSame) {
+  if (kMixedAllocators) GTEST_SKIP() << "PCL's library is built without the sanitizer";
   const Pose pose = somePose();
   const RangeImage there = wallImage(), back = fromPclRangeImage(toPclRangeImage(there, pose), pose);
   EXPECT_NEAR(double(back.farthest()), double(there.farthest()), 1e-3);
