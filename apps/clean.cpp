@@ -158,9 +158,8 @@ void addClean(CLI::App& app) {
   auto command = std::make_shared<CleanCommand>();
   CLI::App* sub = app.add_subcommand("clean", "Remove the points of moving objects from scans");
   sub->footer(
-      "Looks for cells that some scans hit and others see through. Every field and the VIEWPOINT of the scans stay; "
-      "in\n"
-      "organised clouds removed points become NaN. At least two scans that see the same places are needed.\n"
+      "Looks for cells that some scans hit and others see through. Every field and the VIEWPOINT of the scans stay;\n"
+      "in organised clouds removed points become NaN. At least two scans that see the same places are needed.\n"
       "Example: gaussmap clean scans/ -o clean/ --removed removed.pcd");
   sub->add_option("scans", command->input.paths, "PCD files, or directories of them (in natural order)")->required();
   sub->add_option("-o,--output", command->folder, "directory for the cleaned scans, named as they were");

@@ -10,18 +10,12 @@
 #include <string>
 #include <utility>
 
+#include "common/clones.h"
 #include "small_cholesky.h"
 
 namespace gaussmap {
 namespace {
 
-// The loops are compiled for several instruction sets; the loader takes the best one. All round alike.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-#define GAUSSMAP_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define GAUSSMAP_CLONES
-#endif
 // A loop over pairs becomes a vector loop only if the loops inside it are gone by then.
 #define GAUSSMAP_UNROLL _Pragma("GCC unroll 16")
 #define GAUSSMAP_INLINE inline __attribute__((always_inline))

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "common/clones.h"
 #include "map/add_runs.h"
 #include "map/lattice.h"
 
@@ -14,15 +15,6 @@ namespace {
 
 constexpr std::size_t kBlock = PointBlock<3>::kCapacity;
 constexpr std::size_t kFirstSlots = 1024;
-
-// The loops over a block are compiled for several instruction sets; the loader takes the best one. All give the same
-// integers: no fused multiply-add, and rounding to nearest is exact everywhere.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-#define GAUSSMAP_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define GAUSSMAP_CLONES
-#endif
 
 /// One axis of a block on the lattice. Returns 0 if every coordinate fits.
 GAUSSMAP_CLONES std::uint64_t snapAxis(const double* coordinates, std::size_t size, double steps_per_metre,

@@ -4,9 +4,9 @@
 #include <Eigen/Core>
 #include <cmath>
 
-namespace gaussmap {
+#include "common/pi.h"
 
-inline constexpr double kPi = 3.14159265358979323846;
+namespace gaussmap {
 
 /// About the z axis from x to y, in [-pi, pi] [rad].
 inline double azimuthOf(const Eigen::Vector3d& point) {

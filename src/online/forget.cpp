@@ -9,24 +9,6 @@
 namespace gaussmap {
 namespace {
 
-/// Calls body(cell) for the finest cells at most `reach` cells away from one on each axis.
-template <int D, typename Body>
-void forNear(const OnlineCells<D>& cells, std::uint32_t cell, std::int32_t reach, const Body& body) {
-  const CellKey<D> key = cells.cell(cell, 0).key;
-  CellKey<D> near = key;
-  const auto step = [&](const auto& self, std::size_t axis) -> void {
-    if (axis == static_cast<std::size_t>(D)) {
-      if (near == key) return;
-      const std::uint32_t found = cells.find(near, 0);
-      if (found != OnlineCells<D>::kNone) body(found);
-      return;
-    }
-    for (std::int32_t by = -reach; by <= reach; ++by)
-      if (!__builtin_add_overflow(key[axis], by, &near[axis])) self(self, axis + 1);
-  };
-  step(step, 0);
-}
-
 /// The finest cells below 0, and those of the same objects: beside one, and seen only while it was.
 template <int D>
 std::vector<std::uint32_t> cellsToForget(const OnlineCells<D>& cells, const OnlineScan<D>& scan,
@@ -39,7 +21,7 @@ std::vector<std::uint32_t> cellsToForget(const OnlineCells<D>& cells, const Onli
   if (found.empty()) return found;
 
   const Grid<D>& grid = cells.grid();
-  const std::int32_t link = cellsFor(options.objects.link, grid.side(0));
+  const std::int32_t link = cellsFor(options.link, grid.side(0));
   std::vector<bool> taken(cells.slots(0));
   std::vector<std::uint32_t> seeds = found;
   for (const std::uint32_t i : found) taken[i] = true;
@@ -47,7 +29,9 @@ std::vector<std::uint32_t> cellsToForget(const OnlineCells<D>& cells, const Onli
     const std::uint32_t seed = seeds[next];
     const OnlineCell<D>& from = cells.cell(seed, 0);
     const Evidence& object = from.clusters[0].evidence;
-    forNear(cells, found[next], link, [&](std::uint32_t near) {
+    forNearKeys(cells.cell(found[next], 0).key, 1, link, [&](const CellKey<D>& key) {
+      const std::uint32_t near = cells.find(key, 0);
+      if (near == OnlineCells<D>::kNone) return;
       const OnlineCell<D>& cell = cells.cell(near, 0);
       const Evidence& evidence = cell.clusters[0].evidence;
       if (taken[near] || evidence.hits == 0 || evidence.first_hit < object.first_hit ||
@@ -58,7 +42,7 @@ std::vector<std::uint32_t> cellsToForget(const OnlineCells<D>& cells, const Onli
         const auto a = static_cast<std::size_t>(axis);
         apart[axis] += (double(cell.key[a]) - double(from.key[a])) * grid.side(0);
       }
-      if (apart.norm() > options.objects.reach) return;
+      if (apart.norm() > options.reach) return;
       taken[near] = true;
       found.push_back(near);
       seeds.push_back(seed);

@@ -4,13 +4,12 @@
 #include <limits>
 
 #include "common/parallel.h"
+#include "common/pi.h"
 #include "gaussmap/gaussian/random.h"
 #include "online/online_state.h"
 
 namespace gaussmap {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// A cluster that a range image is asked about, and the answer.
 struct Question {

@@ -132,7 +132,7 @@ void OnlineCells<D>::erase(std::uint32_t finest, const Gone& gone) {
       forClustersUnder(i, scale, [&](OnlineCluster<D>& finer) { finer.parent = place[finer.parent]; });
       setClusters(i, scale, std::move(left));
       dead.need = dead.spare = 0.0;  // unknown until the cell is looked at again
-      i = dead.parent;  // a coarser cluster may have stood for the one that is gone
+      i = dead.parent;               // a coarser cluster may have stood for the one that is gone
       continue;
     }
     if (scale > 0)

@@ -8,31 +8,32 @@
 #include <string>
 #include <utility>
 
+#include "mapping/check_options.h"
 #include "online/online_state.h"
 
 namespace gaussmap {
 namespace {
-
-void require(bool usable, const char* option, double value, const char* must) {
-  if (!usable) throw std::invalid_argument(std::string(option) + " = " + std::to_string(value) + ": " + must);
-}
 
 void checkOptions(const OnlineOptions& options) {
   require(options.slowest_rate > 0.0 && options.slowest_rate <= 1.0, "slowest_rate", options.slowest_rate,
           "must be above 0 and at most 1");
   require(options.fastest_rate >= options.slowest_rate && options.fastest_rate <= 1.0, "fastest_rate",
           options.fastest_rate, "must be at least slowest_rate and at most 1");
-  const OccupancyOptions& occupancy = options.occupancy;
-  require(occupancy.hit > 0.0, "hit", occupancy.hit, "must be positive");
-  require(occupancy.miss > 0.0, "miss", occupancy.miss, "must be positive");
-  require(occupancy.most > 0.0, "most", occupancy.most, "must be positive");
+  require(options.occupancy.most > 0.0, "most", options.occupancy.most, "must be positive");
   require(options.occupancy_every >= 1, "occupancy_every", options.occupancy_every, "must be at least 1");
   require(options.look_back >= 0, "look_back", options.look_back, "must not be negative");
   require(options.refine_every >= 0, "refine_every", options.refine_every, "must not be negative");
   require(options.budget >= 1.0, "budget", options.budget, "must be at least 1");
-  require(options.objects.link >= 0.0 && options.objects.link < 1e3, "link", options.objects.link, "must be a length");
-  require(options.objects.reach >= 0.0, "reach", options.objects.reach, "must not be negative");
-  if (options.projection) checkProjection(*options.projection);
+  MovingCellOptions objects;
+  objects.occupancy = options.occupancy;
+  objects.link = options.link;
+  objects.reach = options.reach;
+  checkOptions(objects, options.map.resolution);
+  ScanEvidenceOptions views;
+  views.sight = options.sight;
+  views.projection = options.projection;
+  views.no_return_is_free = options.no_return_is_free;
+  checkOptions(views);
 }
 
 /// Seconds since the last call.
@@ -65,6 +66,7 @@ template <int D>
 struct OnlineMapper<D>::State {
   State(const OnlineOptions& given, Removed told)
       : options(given), cells(Grid<D>(given.map)), removed(std::move(told)) {
+    checkOptions(given);
     options.map = cells.grid().options();
   }
 
@@ -105,7 +107,6 @@ std::optional<RangeImage> OnlineMapper<D>::State::imageOf(const Scan& scan, std:
 
 template <int D>
 OnlineMapper<D>::OnlineMapper(const OnlineOptions& options, Removed removed) {
-  checkOptions(options);
   state_ = std::make_unique<State>(options, std::move(removed));
 }
 

@@ -75,7 +75,8 @@ template <int D>
 void forget(OnlineCells<D>& cells, const OnlineScan<D>& scan, const OnlineOptions& options,
             const typename OnlineMapper<D>::Removed& removed, OnlineStatistics& statistics);
 
-/// More clusters for the touched coarse cells that need them most; Yguel 2009, sec. 5.1.
+/// Looks at the coarse cells with points of the scan, and gives clusters to the cells of the map that are known to need
+/// them most; Yguel 2009, sec. 5.1 (there: to the visible cells only).
 template <int D>
 void refineVisible(OnlineCells<D>& cells, const OnlineScan<D>& scan, const OnlineOptions& options,
                    OnlineStatistics& statistics);

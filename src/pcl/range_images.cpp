@@ -11,8 +11,6 @@
 namespace gaussmap {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 Eigen::Affine3f affineOf(const Pose& pose) {
   Eigen::Affine3f affine = Eigen::Affine3f::Identity();
   affine.linear() = pose.rotation.toRotationMatrix().cast<float>();
@@ -35,10 +33,10 @@ pcl::RangeImage toPclRangeImage(const RangeImage& image, const Pose& sensor) {
     }
   pcl::RangeImage result;
   if (cloud.empty()) return result;
-  const auto width = static_cast<float>(2.0 * kPi / projection->columns);
+  const auto width = static_cast<float>(2.0 * M_PI / projection->columns);
   const auto height =
       static_cast<float>((projection->row_borders.back() - projection->row_borders.front()) / image.rows());
-  result.createFromPointCloud(cloud, width, height, float(2.0 * kPi), float(kPi), affineOf(sensor),
+  result.createFromPointCloud(cloud, width, height, float(2.0 * M_PI), float(M_PI), affineOf(sensor),
                               pcl::RangeImage::LASER_FRAME, 0.0f, 0.0f, 0);
   return result;
 }
@@ -48,9 +46,9 @@ RangeImage fromPclRangeImage(const pcl::RangeImage& image, const Pose& sensor) {
   if (image.points.empty() || !(width > 0.0) || !(height > 0.0))
     throw std::invalid_argument("an empty pcl::RangeImage: it has " + std::to_string(image.points.size()) + " pixels");
   SphericalProjection projection;
-  projection.columns = std::max(1, static_cast<int>(std::lround(2.0 * kPi / width)));
-  const int rows = std::max(1, static_cast<int>(std::lround(kPi / height)));
-  for (int row = 0; row <= rows; ++row) projection.row_borders.push_back(kPi * row / rows - 0.5 * kPi);
+  projection.columns = std::max(1, static_cast<int>(std::lround(2.0 * M_PI / width)));
+  const int rows = std::max(1, static_cast<int>(std::lround(M_PI / height)));
+  for (int row = 0; row <= rows; ++row) projection.row_borders.push_back(M_PI * row / rows - 0.5 * M_PI);
   RangeImage result((Projection(projection)));
   const Eigen::Matrix3d to_sensor = sensor.rotation.toRotationMatrix().transpose();
   for (const pcl::PointWithRange& pixel : image.points)

@@ -7,10 +7,11 @@
 #include <stdexcept>
 #include <string>
 
+#include "common/pi.h"
+
 namespace gaussmap {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kMostFacets = 100000;
 
 std::uint32_t addVertex(TriangleMesh& mesh, const Eigen::Vector3d& vertex) {

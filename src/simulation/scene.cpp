@@ -7,10 +7,11 @@
 #include <stdexcept>
 #include <string>
 
+#include "common/pi.h"
+
 namespace gaussmap {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kMostSurfacePoints = 1e9;
 
 /// Two unit vectors that make a right-handed frame with a direction.

@@ -39,14 +39,15 @@ struct OnlineOptions {
   OccupancyOptions occupancy;
   SightOptions sight;
   OccupancySamples samples = OccupancySamples::Mean;
-  std::optional<Projection> projection;     ///< of every scan; nothing: found from each scan's points
+  std::optional<Projection> projection;     ///< of every scan; nothing: found, and again when a scan looks different
   std::optional<double> no_return_is_free;  ///< pixels without return are free space up to this range [m]
   std::vector<double> max_ranges;  ///< per scale: cells farther from the sensor are not looked at [m]; none: no limit
   int occupancy_every = 1;         ///< scans, >= 1
   int look_back = 10;              ///< so many range images are kept and asked about every new cell, >= 0
 
-  bool forget = true;         ///< delete clusters whose occupancy is below 0
-  MovingCellOptions objects;  ///< what is deleted with a freed cell; its `occupancy` and `min_points` are not used
+  bool forget = true;                        ///< delete clusters whose occupancy is below 0 ...
+  double link = MovingCellOptions().link;    ///< ... and what hangs together with them over such gaps [m] ...
+  double reach = MovingCellOptions().reach;  ///< ... so far away, and was only seen while they were [m]
 
   int refine_every = 10;         ///< scans; 0 = never
   std::size_t refine_cells = 0;  ///< p, most clusters added to a scale at a time; 0: as many as the budget allows (with
