@@ -163,7 +163,7 @@ void restoreCell(OnlineCells<D>& cells, const RemovedCluster<D>& removed, const 
   OnlineCluster<D> back;
   back.gaussian = removed.gaussian;
   back.gaussian.mean -= grid.centre(removed.key, 0);
-  back.log_odds = static_cast<float>(std::max(0.0, removed.log_odds));  // else the next miss would delete it again
+  back.log_odds = static_cast<float>(options.occupancy.most);  // else the next miss would delete it again
   back.evidence = removed.evidence;
   const bool is_new = cells.cell(cell, 0).clusters.empty();
   if (is_new) cells.addCluster(cell, 0, back);

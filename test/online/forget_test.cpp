@@ -66,21 +66,84 @@ TEST(Forget, ACellThatIsNewBetweenTwoLooksCountsAsHit) {
 }
 
 TEST(Forget, TheBudgetShrinksWithTheMap) {
-  // Two boxes in one coarse cell; one of them leaves, and with it a cluster of the cell.
-  for (const double budget : {1.2, 1.5, 2.0, 3.0}) {
-    OnlineOptions options = wallOptions();
-    options.refine_every = 1;
-    options.budget = budget;
-    OnlineMapper<3> mapper(options);
-    for (int i = 0; i < 16; ++i) {
-      std::vector<double> boxes = {2.4};
-      if (i < 2) boxes = {0.3, 1.35, 2.4, 3.45};
-      mapper.add(boxScan(boxes));
-      const GaussianMap<3> map = mapper.map();
-      for (int s = 1; s < 3; ++s)
-        EXPECT_LE(double(map.gaussianCount(s)), budget * double(map.cellCount(s))) << i << ", scale " << s;
-    }
-  }
+  // Small things that have one cluster in each of their coarse cells; when they go, the budget falls by more.
+  OnlineOptions options = wallOptions();
+  options.refine_every = 1;
+  options.budget = 2.0;
+  OnlineMapper<3> mapper(options);
+  Scan first = wallScan(false);
+  for (int y = -3; y < 3; ++y)
+    for (int z = -1; z < 1; ++z)
+      for (int i = 0; i < 9; ++i) first.points.push_back({5.1, y + 0.45 + 0.03 * (i % 3), z + 0.45 + 0.03 * (i / 3)});
+  mapper.add(first);
+  for (int i = 0; i < 8; ++i) mapper.add(wallScan(false));
+  const GaussianMap<3> map = mapper.map();
+  ASSERT_EQ(inFront(map, 0), 0u);
+  for (int s = 1; s < 3; ++s) EXPECT_LE(map.gaussianCount(s), 2 * map.cellCount(s)) << "scale " << s;
+}
+
+TEST(Forget, ACellWithAPointIsHitThoughItsMeanIsSeenThrough) {
+  // Many points at one side of a near cell, then one at the other side: the beams pass its mean, but something is
+  // there.
+  Scan many = wallScan(false), one = wallScan(false);
+  for (int i = 0; i < 50; ++i) many.points.push_back({1.1, 0.02 + 0.0002 * i, 0.1});
+  one.points.push_back({1.1, 0.18, 0.1});
+  OnlineMapper<3> mapper(wallOptions());
+  mapper.add(many);
+  for (int i = 0; i < 3; ++i) mapper.add(one);
+  for (int i = 0; i < 8; ++i) mapper.add(wallScan(false));  // four hits give 3.4, eight misses take 3.2
+  EXPECT_EQ(inFront(mapper.map(), 0), 1u);
+  mapper.add(wallScan(false));
+  EXPECT_EQ(inFront(mapper.map(), 0), 0u);
+}
+
+TEST(Forget, AnObjectReachesOnlySoFarBeyondItsFreedCells) {
+  // A pole hangs from the box down to where later scans see nothing.
+  Scan first = wallScan(true);
+  for (int i = 0; i < 190; ++i) first.points.push_back({5.1, 0.0, -0.6 - 0.01 * i});
+  OnlineOptions options = wallOptions();
+  options.projection = findProjection(wallScan(false).points);
+  OnlineMapper<3> mapper(options);
+  mapper.add(first);
+  for (int i = 0; i < 6; ++i) mapper.add(wallScan(false));
+  const GaussianMap<3> map = mapper.map();
+  double highest = -10.0;
+  for (std::size_t i = 0; i < map.gaussianCount(0); ++i)
+    if (map.gaussian(i, 0).mean.x() < 8.0) highest = std::max(highest, map.gaussian(i, 0).mean.z());
+  EXPECT_LT(highest, -0.9);
+  EXPECT_GT(highest, -1.9);
+}
+
+TEST(Forget, ASensorThatSeesMoreThanTheOneBeforeIsUnderstood) {
+  LidarOptions narrow = wallLidar();
+  narrow.lowest_deg = 4.0;
+  OnlineMapper<3> mapper(wallOptions());
+  mapper.add(boxScan({}, narrow));
+  mapper.add(wallScan(true));  // the box is lower than the first sensor looked
+  for (int i = 0; i < 4; ++i) mapper.add(wallScan(false));
+  EXPECT_EQ(inFront(mapper.map(), 0), 0u);
+}
+
+TEST(Forget, ASensorOfFewerBeamsThanTheOneBeforeIsUnderstood) {
+  LidarOptions sparse = wallLidar();
+  sparse.columns = 180;
+  OnlineMapper<3> mapper(wallOptions());
+  mapper.add(wallScan(false));
+  mapper.add(boxScan({-0.5}, sparse));
+  for (int i = 0; i < 4; ++i) mapper.add(boxScan({}, sparse));
+  EXPECT_EQ(inFront(mapper.map(), 0), 0u);
+}
+
+TEST(Forget, WhatWasRestoredIsNotForgottenAtTheNextLook) {
+  std::vector<RemovedCluster<3>> removed;
+  OnlineMapper<3> mapper(wallOptions(), [&](const RemovedCluster<3>& cluster) { removed.push_back(cluster); });
+  mapper.add(wallScan(true));
+  const std::size_t box = inFront(mapper.map(), 0);
+  for (int i = 0; i < 4; ++i) mapper.add(wallScan(false));
+  for (const RemovedCluster<3>& cluster : removed)
+    if (cluster.scale == 0) mapper.restore(cluster);
+  for (int i = 0; i < 4; ++i) mapper.add(wallScan(false));
+  EXPECT_EQ(inFront(mapper.map(), 0), box);
 }
 
 TEST(Forget, LookingBackFindsWhatWasNotThereBefore) {

@@ -16,16 +16,19 @@ inline Scan asScan(const SimulatedScan& simulated) {
 
 /// Looks from the origin at a wall at x = 10.1 with boxes in front of it at x = 5.1, their right edges at these y. No
 /// noise.
-inline Scan boxScan(const std::vector<double>& boxes) {
-  Scene scene;
-  scene.rectangles.push_back({{10.1, -6.0, -2.0}, {0.0, 12.0, 0.0}, {0.0, 0.0, 4.0}});
-  for (const double y : boxes) scene.rectangles.push_back({{5.1, y, -0.5}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}});
+inline LidarOptions wallLidar() {
   LidarOptions lidar;
   lidar.rings = 40;
   lidar.lowest_deg = -10.0;
   lidar.highest_deg = 10.0;
   lidar.columns = 720;
   lidar.noise = 0.0;
+  return lidar;
+}
+inline Scan boxScan(const std::vector<double>& boxes, const LidarOptions& lidar = wallLidar()) {
+  Scene scene;
+  scene.rectangles.push_back({{10.1, -6.0, -2.0}, {0.0, 12.0, 0.0}, {0.0, 0.0, 4.0}});
+  for (const double y : boxes) scene.rectangles.push_back({{5.1, y, -0.5}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}});
   return asScan(simulateScan(scene, Pose(), lidar));
 }
 inline Scan wallScan(bool with_box) {

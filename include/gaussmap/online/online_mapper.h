@@ -103,7 +103,8 @@ class OnlineMapper {
   /// then not counted.
   OnlineStatistics add(const Scan& scan);
 
-  /// Brings a deleted finest cluster back, as it was. Throws std::invalid_argument for another scale.
+  /// Brings a deleted finest cluster back, as certain as can be: whoever calls this knows that it is there. Throws
+  /// std::invalid_argument for another scale.
   void restore(const RemovedCluster<D>& removed);
 
   /// The map as it is now. With LearningRate::SampleMean the finest scale holds exact moments, and every coarse
