@@ -35,7 +35,9 @@ std::string sentenceOf(const Json& step) {
 /// Whether more scans can be added, and why not.
 std::string stateOf(const GaussianMap<3>& map) {
   if (map.isCompressed()) return "compressed: detail only where it is needed (takes no more scans)";
-  return map.canGrow() ? "exact moments at the finest scale (takes more scans)" : "Gaussians only (final)";
+  const std::string occupancy = map.hasOccupancy() ? ", with occupancy" : "";
+  return (map.canGrow() ? "exact moments at the finest scale (takes more scans)" : "Gaussians only (final)") +
+         occupancy;
 }
 
 /// Adds to each scale what of it is the finest that the map has there.
@@ -99,6 +101,7 @@ void printInfo(const InfoOptions& options) {
                  {"finest", map.canGrow() || !map.scale(0).moments.empty() ? "moments" : "gaussians"},
                  {"takes_scans", map.canGrow()},
                  {"compressed", map.isCompressed()},
+                 {"occupancy", map.hasOccupancy()},
                  {"scales", scales},
                  {"bytes", size.file}};
     if (extent) info["extent"] = {{"low", vectorOf(extent->low)}, {"high", vectorOf(extent->high)}};

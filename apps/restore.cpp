@@ -2,10 +2,13 @@
 // gaussmap restore MAP REMOVED -o OUT: brings deleted clusters back.
 #include <algorithm>
 #include <iostream>
+#include <optional>
+#include <vector>
 
 #include "common.h"
 #include "gaussmap/io/map_pcd.h"
 #include "gaussmap/io/removed_pcd.h"
+#include "gaussmap/map/occupancy.h"
 #include "gaussmap/mapping/build.h"
 #include "gaussmap/mapping/refine.h"
 
@@ -64,9 +67,21 @@ MomentGrid<3> sumsOf(const GaussianMap<3>& map, const std::vector<RemovedCluster
   return sums;
 }
 
+/// Log-odds of the finest cells: what was brought back is certain, whoever asks for it knows that it is there.
+std::vector<float> occupancyAfter(const GaussianMap<3>& map, const GaussianMap<3>& old) {
+  std::vector<float> log_odds;
+  for (std::size_t cell = 0; cell < map.cellCount(0); ++cell) {
+    const std::optional<std::size_t> before = old.find(map.scale(0).keys[cell], 0);
+    const bool is_as_before = before && old.scale(0).moments[*before] == map.scale(0).moments[cell];
+    log_odds.push_back(is_as_before ? old.logOdds(*before, 0) : kMaxOccupancy);
+  }
+  return log_odds;
+}
+
 /// The coarse scales made anew, as large as they were, but one Gaussian a cell at least.
 GaussianMap<3> rebuilt(const MomentGrid<3>& sums, const GaussianMap<3>& old, int threads) {
   GaussianMap<3> map = build<3>(sums, old.options());
+  if (old.hasOccupancy()) map = withOccupancy<3>(map, occupancyAfter(map, old));
   RefineOptions options;
   options.threads = threads;
   bool is_unrefined = true;

@@ -66,6 +66,7 @@ Tile<D> cutTile(const GaussianMap<D>& map, int s, const std::vector<IndexRange>&
       if (!scale.moments.empty()) tile.moments.push_back(scale.moments[cell]);
       for (std::size_t i = range.first; i < range.last; ++i) {
         if (scale.moments.empty()) tile.gaussians.push_back(scale.gaussians[i]);
+        if (map.hasOccupancy()) tile.log_odds.push_back(scale.log_odds[i]);
         if (s + 1 == map.scales()) continue;
         const std::size_t parent = scale.parent[i];
         const std::size_t first = map.gaussiansOf(map.cellOf(parent, s + 1), s + 1).first;
@@ -182,6 +183,7 @@ Tile<D> readTiles(const Database& database, int s, const MapOptions& options) {
       append(all.moments, tile.moments);
       append(all.gaussians, tile.gaussians);
       append(all.labels, tile.labels);
+      append(all.log_odds, tile.log_odds);
     } catch (const std::runtime_error& error) {
       throw FileError(database.path(), "tile " + toString<D>(address.tile) + " of scale " + std::to_string(s) +
                                            " is damaged: " + error.what());
@@ -204,6 +206,8 @@ OrderedScale<D> inKeyOrder(const Tile<D>& tile, const MapOptions& options, int s
   const bool single = first.back() == tile.keys.size();
   if (!tile.moments.empty() && (tile.moments.size() != tile.keys.size() || !tile.gaussians.empty()))
     throw std::invalid_argument("some cells hold moments and some do not");
+  if (!tile.log_odds.empty() && tile.log_odds.size() != first.back())
+    throw std::invalid_argument("some cells hold an occupancy and some do not");
   OrderedScale<D> ordered;
   MapScale<D>& scale = ordered.scale;
   if (!single) scale.first_gaussian.push_back(0);
@@ -212,6 +216,7 @@ OrderedScale<D> inKeyOrder(const Tile<D>& tile, const MapOptions& options, int s
     if (!tile.moments.empty()) scale.moments.push_back(tile.moments[from]);
     for (std::size_t i = first[from]; i < first[from + 1]; ++i) {
       if (!tile.gaussians.empty()) scale.gaussians.push_back(tile.gaussians[i]);
+      if (!tile.log_odds.empty()) scale.log_odds.push_back(tile.log_odds[i]);
       if (s + 1 == options.scales) continue;
       if (i >= tile.labels.size()) throw std::invalid_argument("a Gaussian without a parent");
       ordered.labels.push_back(tile.labels[i]);

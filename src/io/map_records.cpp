@@ -42,7 +42,7 @@ GaussianRecord toRecord(const GaussianMap<3>& map, std::size_t index, int scale,
   return {{mean.x(), mean.y(), mean.z()},
           {cov(0, 0), cov(0, 1), cov(0, 2), cov(1, 1), cov(1, 2), cov(2, 2)},
           static_cast<float>(gaussian.weight),
-          kMaxOccupancy,
+          map.logOdds(index, scale),
           static_cast<float>(map.grid().side(scale)),
           static_cast<float>(scale),
           key};
@@ -92,7 +92,11 @@ MapOptions optionsOf(const std::map<int, float>& sides) {
   return options;
 }
 
-using CellGroups = std::map<CellKey<3>, std::vector<Gaussian<3>>>;  // means about the centre of the cell
+struct CellGroup {
+  std::vector<Gaussian<3>> gaussians;  // means about the centre of the cell
+  std::vector<float> log_odds;
+};
+using CellGroups = std::map<CellKey<3>, CellGroup>;
 
 /// The nearest cluster of the cell above, means about the centre of the parent.
 std::size_t nearestParent(Gaussian<3> child, const Vector<3>& centre_in_parent,
@@ -152,9 +156,13 @@ GaussianMap<3> fromRecords(const GaussianRecords& all) {
     gaussian.mean = gaussian.mean.cwiseMax(-half).cwiseMin(half);
     gaussian.cov = positiveDefinite(record);
     gaussian.weight = static_cast<double>(record.weight);
-    cells[static_cast<std::size_t>(scale)][record.cell].push_back(gaussian);
+    CellGroup& group = cells[static_cast<std::size_t>(scale)][record.cell];
+    group.gaussians.push_back(gaussian);
+    group.log_odds.push_back(record.occupancy);
   }
 
+  const bool occupancy = std::any_of(all.records.begin(), all.records.end(),
+                                     [](const GaussianRecord& record) { return record.occupancy != kMaxOccupancy; });
   std::vector<MapScale<3>> scales(sides.size());
   for (int s = 0; s < options.scales; ++s) {
     MapScale<3>& scale = scales[static_cast<std::size_t>(s)];
@@ -163,9 +171,10 @@ GaussianMap<3> fromRecords(const GaussianRecords& all) {
     for (const auto& [key, group] : groups) keys.push_back(key);
     scale.first_gaussian.push_back(0);
     for (const std::uint32_t from : keyOrder<3>(keys, options.ratio, options.scales - 1 - s)) {
-      const std::vector<Gaussian<3>>& gaussians = groups.at(keys[from]);
+      const CellGroup& group = groups.at(keys[from]);
       scale.keys.push_back(keys[from]);
-      scale.gaussians.insert(scale.gaussians.end(), gaussians.begin(), gaussians.end());
+      scale.gaussians.insert(scale.gaussians.end(), group.gaussians.begin(), group.gaussians.end());
+      if (occupancy) scale.log_odds.insert(scale.log_odds.end(), group.log_odds.begin(), group.log_odds.end());
       scale.first_gaussian.push_back(static_cast<std::uint32_t>(scale.gaussians.size()));
     }
     if (s == 0) continue;

@@ -15,12 +15,25 @@ namespace gaussmap {
 namespace {
 
 constexpr std::uint64_t kMostExpansion = 64;  // of a tile by decompression; real ones grow two or three times
-constexpr std::uint64_t kHasMoments = 1, kHasLabels = 2;
+constexpr std::uint64_t kHasMoments = 1, kHasLabels = 2, kHasLogOdds = 4;
 
 std::uint64_t bitsOf(double value) {
   std::uint64_t bits = 0;
   std::memcpy(&bits, &value, sizeof bits);
   return bits;
+}
+
+std::uint64_t bitsOf(float value) {
+  std::uint32_t bits = 0;
+  std::memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+
+float floatFromBits(std::uint64_t bits) {
+  const auto low = static_cast<std::uint32_t>(bits);
+  float value = 0.0f;
+  std::memcpy(&value, &low, sizeof value);
+  return value;
 }
 
 double fromBits(std::uint64_t bits) {
@@ -166,7 +179,8 @@ template <int D>
 std::string encodeTile(const Tile<D>& tile, const TileAddress<D>& address, const MapOptions& options, int level) {
   const std::size_t cells = tile.keys.size();
   const std::size_t gaussians = tile.moments.empty() ? tile.gaussians.size() : cells;
-  const std::uint64_t flags = (tile.moments.empty() ? 0 : kHasMoments) | (tile.labels.empty() ? 0 : kHasLabels);
+  const std::uint64_t flags = (tile.moments.empty() ? 0 : kHasMoments) | (tile.labels.empty() ? 0 : kHasLabels) |
+                              (tile.log_odds.empty() ? 0 : kHasLogOdds);
   std::string raw;
   ColumnWriter columns(raw);
   for (std::uint64_t number : headerOf<D>(address, options, cells, gaussians, flags))
@@ -192,6 +206,7 @@ std::string encodeTile(const Tile<D>& tile, const TileAddress<D>& address, const
     });
   }
   if (flags & kHasLabels) columns.write(gaussians, 4, [&](std::size_t i) { return std::uint64_t{tile.labels[i]}; });
+  if (flags & kHasLogOdds) columns.write(gaussians, 4, [&](std::size_t i) { return bitsOf(tile.log_odds[i]); });
   return compress(raw, level);
 }
 
@@ -204,12 +219,14 @@ Tile<D> decodeTile(std::string_view bytes, const TileAddress<D>& address, const 
   const std::uint64_t cells = header[kCellsSlot], gaussians = header[kGaussiansSlot], flags = header[kFlagsSlot];
   if (header != headerOf<D>(address, options, cells, gaussians, flags))
     throw std::runtime_error("belongs to another place or another map");
-  const bool has_moments = flags & kHasMoments, has_labels = flags & kHasLabels;
+  const bool has_moments = flags & kHasMoments, has_labels = flags & kHasLabels, has_log_odds = flags & kHasLogOdds;
   constexpr std::uint64_t kNumbers = 1 + D + D * (D + 1) / 2;
   constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
-  if ((flags & ~(kHasMoments | kHasLabels)) != 0) throw std::runtime_error("holds what this version does not know");
+  if ((flags & ~(kHasMoments | kHasLabels | kHasLogOdds)) != 0)
+    throw std::runtime_error("holds what this version does not know");
   if (cells == 0 || cells > kMost || gaussians < cells || gaussians > kMost || (has_moments && gaussians != cells) ||
-      columns.left() != cells * 4 * (D + 1) + gaussians * (8 * kNumbers + (has_labels ? 4 : 0)))
+      columns.left() !=
+          cells * 4 * (D + 1) + gaussians * (8 * kNumbers + (has_labels ? 4 : 0) + (has_log_odds ? 4 : 0)))
     throw std::runtime_error("its size does not fit its cells");
 
   Tile<D> tile;
@@ -262,6 +279,13 @@ Tile<D> decodeTile(std::string_view bytes, const TileAddress<D>& address, const 
   if (has_labels) {
     tile.labels.resize(gaussians);
     columns.read(gaussians, 4, [&](std::size_t i, std::uint64_t bits) { tile.labels[i] = std::uint32_t(bits); });
+  }
+  if (has_log_odds) {
+    tile.log_odds.resize(gaussians);
+    columns.read(gaussians, 4, [&](std::size_t i, std::uint64_t bits) {
+      tile.log_odds[i] = floatFromBits(bits);
+      if (!std::isfinite(tile.log_odds[i])) throw std::runtime_error("an occupancy that is not finite");
+    });
   }
   return tile;
 }

@@ -17,6 +17,7 @@ struct Tile {
   std::vector<CellMoments<D>> moments;  ///< n, or empty
   std::vector<Gaussian<D>> gaussians;   ///< m = sum of counts, or empty; mean about the centre of the cell
   std::vector<std::uint32_t> labels;    ///< m ranks of the parent in the cell above, or empty
+  std::vector<float> log_odds;          ///< m, or empty
 };
 
 /// What the bytes of a tile are checked against: a tile cannot be taken for another one's, or for another map's.

@@ -46,6 +46,10 @@ void checkScale(const MapScale<D>& scale, int s, double side) {
           ? scale.gaussianCount() != cells
           : !cutsIntoRanges(scale.first_gaussian, cells, scale.gaussianCount()) || hasEmptyRange(scale.first_gaussian))
     refuse(s, "Gaussians do not match the cells");
+  if (!scale.log_odds.empty() && scale.log_odds.size() != scale.gaussianCount())
+    refuse(s, "occupancies do not match the Gaussians");
+  for (const float log_odds : scale.log_odds)
+    if (!std::isfinite(log_odds)) refuse(s, "an occupancy that is not finite");
 }
 
 template <int D>
@@ -95,6 +99,8 @@ GaussianMap<D>::GaussianMap(const MapOptions& options, std::vector<MapScale<D>> 
   for (const MapScale<D>& level : scales_) {
     weights_.push_back(weightOf<D>(level));
     compressed_ |= hasEmptyRange(level.first_child);
+    if (level.gaussianCount() > 0 && level.log_odds.empty() == hasOccupancy())
+      throw std::invalid_argument("some scales know of occupancy and some do not");
   }
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "gaussmap/map/occupancy.h"
 #include "refine_scale.h"
 
 namespace gaussmap {
@@ -59,6 +60,7 @@ GaussianMap<D> refineScales(const GaussianMap<D>& map, const RefineScale& refine
     MapScale<D> coarse = coarsen(finer, map.grid(), finer_scale);
     CoarseScale<D> scale{finer, coarse, map.grid(), finer_scale};
     refineScale(scale, areas);
+    inheritOccupancy<D>(finer, coarse);
     areas = coarserAreas(finer, areas, coarse.gaussianCount());
     scales.push_back(std::move(coarse));
   }

@@ -24,6 +24,7 @@ MapScale<D> thinScale(const GaussianMap<D>& map, int s, const std::vector<char>&
     for (std::size_t i = range.first; i < range.last; ++i) {
       own_places[i] = next++;
       if (!old.gaussians.empty()) thin.gaussians.push_back(old.gaussians[i]);
+      if (!old.log_odds.empty()) thin.log_odds.push_back(old.log_odds[i]);
       if (!old.parent.empty()) thin.parent.push_back(places[old.parent[i]]);
     }
   }

@@ -200,6 +200,7 @@ GaussianMap<D> OnlineMapper<D>::State::freeze() {
           out.moments.push_back(cells.moments(i));
         else
           out.gaussians.push_back(cluster.gaussian);
+        out.log_odds.push_back(cluster.log_odds);
         if (scale < top) out.parent.push_back(starts[cell.parent] + cluster.parent);
       }
     }

@@ -43,6 +43,7 @@ testing::AssertionResult sameMap(const GaussianMap<D>& a, const GaussianMap<D>& 
     if (x.first_child != y.first_child && !(x.keys.empty() && y.keys.empty())) return differ("children");
     if (x.moments != y.moments) return differ("moments");
     if (x.parent != y.parent) return differ("parents");
+    if (!sameBits(x.log_odds, y.log_odds)) return differ("occupancy");
     if (x.gaussians.size() != y.gaussians.size()) return differ("number of Gaussians");
     for (std::size_t i = 0; i < x.gaussians.size(); ++i)
       if (!sameGaussian<D>(x.gaussians[i], y.gaussians[i])) return differ("a Gaussian");

@@ -77,6 +77,15 @@ TEST(TileCodec, GivesBackGaussians) {
   }
 }
 
+TEST(TileCodec, GivesBackOccupancies) {
+  Tile<3> tile = gaussianTile();
+  tile.log_odds = {-2.5f, 10.0f, 0.0f};
+  EXPECT_EQ(decodeTile<3>(encoded(tile), kAddress, kOptions).log_odds, tile.log_odds);
+  EXPECT_TRUE(decodeTile<3>(encoded(gaussianTile()), kAddress, kOptions).log_odds.empty());
+  tile.log_odds[1] = std::numeric_limits<float>::quiet_NaN();
+  expectRefused(encoded(tile), "occupancy");
+}
+
 TEST(TileCodec, GivesBackMoments) {
   const Tile<3> tile = momentTile(), got = decodeTile<3>(encoded(tile), kAddress, kOptions);
   EXPECT_EQ(got.keys, tile.keys);
@@ -121,7 +130,8 @@ TEST(TileCodec, RefusesFalseCounts) {
   }
   expectRefused(withNumber(raw, 8, 3), why);  // moments and labels
   expectRefused(withNumber(raw, 8, 0), why);
-  expectRefused(withNumber(raw, 8, 4), "does not know");
+  expectRefused(withNumber(raw, 8, 6), why);  // labels and occupancies
+  expectRefused(withNumber(raw, 8, 8), "does not know");
   expectRefused(pack(raw + "x"), why);
   expectRefused(pack(raw.substr(0, raw.size() - 1)), why);
   expectRefused(pack(raw.substr(0, 50)), "shorter");

@@ -7,6 +7,7 @@
 #include "gaussmap/online/online_mapper.h"
 #include "gaussmap/simulation/lidar.h"
 #include "gaussmap/simulation/simulation.h"
+#include "io/map_equality.h"
 
 namespace gaussmap::test {
 
@@ -61,22 +62,6 @@ inline std::vector<Vector<3>> inMap(const Scan& scan) {
   for (const Eigen::Vector3d& point : scan.points)
     if (isReturn(point)) points.push_back(scan.pose.rotation.toRotationMatrix() * point + scan.pose.translation);
   return points;
-}
-
-template <int D>
-bool sameScale(const MapScale<D>& a, const MapScale<D>& b) {
-  const auto same = [](const Gaussian<D>& x, const Gaussian<D>& y) {
-    return x.mean == y.mean && x.cov == y.cov && x.weight == y.weight;
-  };
-  return a.keys == b.keys && a.moments == b.moments && a.parent == b.parent && a.first_gaussian == b.first_gaussian &&
-         std::equal(a.gaussians.begin(), a.gaussians.end(), b.gaussians.begin(), b.gaussians.end(), same);
-}
-
-template <int D>
-bool sameMap(const GaussianMap<D>& a, const GaussianMap<D>& b) {
-  bool same = a.scales() == b.scales();
-  for (int s = 0; same && s < a.scales(); ++s) same = sameScale(a.scale(s), b.scale(s));
-  return same;
 }
 
 }  // namespace gaussmap::test

@@ -12,15 +12,12 @@
 
 namespace gaussmap {
 
-/// Highest log-odds of occupancy, the paper's o_max. A map built in one go has seen no miss: all its clusters have it.
-inline constexpr float kMaxOccupancy = 10.0f;
-
 /// One Gaussian as it stands in a PCD file, and as PCL's PointGaussian holds it.
 struct GaussianRecord {
   std::array<float, 3> mean;        ///< x y z [m] about the origin of its records
   std::array<float, 6> covariance;  ///< xx xy xz yy yz zz [m^2]
   float weight;                     ///< points
-  float occupancy;                  ///< log-odds in [-kMaxOccupancy, kMaxOccupancy]
+  float occupancy;                  ///< log-odds; kMaxOccupancy where no scan was asked
   float cell_side;                  ///< [m]
   float scale;                      ///< 0 = finest; a float because pcl::PassThrough filters by nothing else
   std::array<std::int32_t, 3> cell;

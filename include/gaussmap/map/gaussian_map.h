@@ -12,6 +12,9 @@
 
 namespace gaussmap {
 
+/// Highest log-odds of occupancy, the paper's o_max. A map built in one go has seen no miss: all its clusters have it.
+inline constexpr float kMaxOccupancy = 10.0f;
+
 /// Indices first, first + 1, ..., last - 1.
 struct IndexRange {
   std::size_t first = 0;
@@ -30,6 +33,7 @@ struct MapScale {
   std::vector<std::uint32_t> first_gaussian;  ///< n + 1, or empty: cell i holds Gaussian i
   std::vector<Gaussian<D>> gaussians;         ///< mean about the centre of the cell; empty where there are moments
   std::vector<std::uint32_t> parent;          ///< per Gaussian, its cluster at the coarser scale; empty at the coarsest
+  std::vector<float> log_odds;                ///< per Gaussian, of being occupied; or empty: no scan was asked
 
   std::size_t gaussianCount() const { return gaussians.empty() ? moments.size() : gaussians.size(); }
 };
@@ -82,6 +86,11 @@ class GaussianMap {
   Gaussian<D> gaussian(std::size_t index, int s) const;
   /// The same with its mean about the centre of its cell: nothing lost far from the origin.
   Gaussian<D> localGaussian(std::size_t index, int s) const;
+
+  /// True when range images have been asked about the Gaussians: a map made on line. All scales know it, or none.
+  bool hasOccupancy() const { return !scale(scales() - 1).log_odds.empty(); }
+  /// Log-odds that something is there; kMaxOccupancy in a map that has seen no miss since no scan was asked.
+  float logOdds(std::size_t index, int s) const { return hasOccupancy() ? scale(s).log_odds[index] : kMaxOccupancy; }
 
   /// The cluster of scale s + 1 that a Gaussian of scale s belongs to (paper Fig. 6); s below the coarsest.
   std::size_t parentOf(std::size_t index, int s) const { return scale(s).parent[index]; }

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gaussmap/map/occupancy.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace gaussmap {
+
+template <int D>
+void inheritOccupancy(const MapScale<D>& finer, MapScale<D>& coarse) {
+  if (finer.log_odds.empty()) return;
+  constexpr float kNothingYet = std::numeric_limits<float>::lowest();
+  std::vector<float> highest(coarse.gaussianCount(), kNothingYet);
+  for (std::size_t i = 0; i < finer.parent.size(); ++i)
+    highest[finer.parent[i]] = std::max(highest[finer.parent[i]], finer.log_odds[i]);
+  for (std::size_t i = 0; i < highest.size(); ++i)
+    if (highest[i] == kNothingYet) highest[i] = coarse.log_odds.empty() ? kMaxOccupancy : coarse.log_odds[i];
+  coarse.log_odds = std::move(highest);
+}
+
+template <int D>
+GaussianMap<D> withOccupancy(const GaussianMap<D>& map, std::vector<float> log_odds) {
+  std::vector<MapScale<D>> scales;
+  for (int s = 0; s < map.scales(); ++s) {
+    scales.push_back(map.scale(s));
+    if (s == 0)
+      scales.front().log_odds = std::move(log_odds);
+    else
+      inheritOccupancy<D>(scales[scales.size() - 2], scales.back());
+  }
+  return GaussianMap<D>(map.options(), std::move(scales));
+}
+
+#define GAUSSMAP_INSTANTIATE(D)                                        \
+  template void inheritOccupancy<D>(const MapScale<D>&, MapScale<D>&); \
+  template GaussianMap<D> withOccupancy<D>(const GaussianMap<D>&, std::vector<float>);
+GAUSSMAP_INSTANTIATE(2)
+GAUSSMAP_INSTANTIATE(3)
+#undef GAUSSMAP_INSTANTIATE
+
+}  // namespace gaussmap
