@@ -185,6 +185,17 @@ void MomentGrid<D>::add(const CellKey<D>& key, const CellMoments<D>& moments) {
 }
 
 template <int D>
+const CellMoments<D>* MomentGrid<D>::find(const CellKey<D>& key) const {
+  const std::uint32_t hash = hashOf<D>(key);
+  const std::size_t mask = slots_.size() - 1;
+  for (std::size_t position = hash & mask; slots_[position].index != kEmpty; position = (position + 1) & mask) {
+    const Cell& found = (*this)[slots_[position].index];
+    if (slots_[position].hash == hash && same<D>(found.key, key)) return &found.moments;
+  }
+  return nullptr;
+}
+
+template <int D>
 void MomentGrid<D>::merge(const MomentGrid& other) {
   if (other.resolution_ != resolution_) {
     std::ostringstream text;

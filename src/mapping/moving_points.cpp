@@ -133,10 +133,9 @@ std::vector<bool> MovingPoints::inScan(std::size_t index) const {
     if (entry == state.shared.end() || !entry->second.surface || index < entry->second.first_scan ||
         index > entry->second.last_scan)
       continue;
-    const Surface& surface = *entry->second.surface;
+    const Surface<3>& surface = *entry->second.surface;
     const Eigen::Vector3d about_centre = in_map - state.map.grid().centre(state.map.scale(0).keys[*cell], 0);
-    flags[i] = std::abs(surface.normal.dot(about_centre - surface.point)) >
-               std::max(state.options.shared.noise, 3.0 * surface.deviation);
+    flags[i] = std::abs(surface.normal.dot(about_centre - surface.point)) > surface.thickness(state.options.shared);
   }
   return flags;
 }

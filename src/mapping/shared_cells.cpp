@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mapping/shared_cells.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 
 #include "common/parallel.h"
@@ -9,38 +8,6 @@
 #include "mapping/near_cells.h"
 
 namespace gaussmap {
-namespace {
-
-constexpr double kFewest = 10.0;  // points that make a surface
-constexpr double kExtent = 0.05;  // a surface has a standard deviation of at least this on its second axis [m]
-
-/// Sums over points about one place.
-struct Sums {
-  double n = 0.0;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d product = Eigen::Matrix3d::Zero();
-
-  void add(const CellMoments<3>& moments, double side, const Eigen::Vector3d& offset) {
-    const auto count = static_cast<double>(moments.count);
-    const Eigen::Vector3d mean = moments.mean(side) + offset;
-    n += count;
-    sum += count * mean;
-    product += count * (moments.covariance(side) + mean * mean.transpose());
-  }
-
-  std::optional<Surface> surface(double flatness) const {
-    if (n < kFewest) return std::nullopt;
-    const Eigen::Vector3d mean = sum / n;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(product / n - mean * mean.transpose());
-    const double across = std::sqrt(std::max(0.0, axes.eigenvalues()[0]));
-    const double along = std::sqrt(std::max(0.0, axes.eigenvalues()[1]));
-    if (across > flatness || along < kExtent) return std::nullopt;
-    return Surface{mean, axes.eigenvectors().col(0), across};
-  }
-};
-
-}  // namespace
-
 void checkOptions(const SharedCellOptions& options, double resolution) {
   require(options.reach >= 0.0 && options.reach <= kMostCells * resolution, "reach of a surface", options.reach,
           "must be 0 to 1000 cells");
@@ -78,7 +45,7 @@ void fitSurfaces(const GaussianMap<3>& map, const MomentGrid<3>& still, const Sh
   parallelFor(entries.size(), threads, 64, [&](std::size_t i) {
     const std::size_t cell = entries[i]->first;
     const CellKey<3> key = map.scale(0).keys[cell];
-    Sums sums;
+    SurfaceSums<3> sums;
     const auto add = [&](std::size_t near) {
       const CellMoments<3>* moments = &map.scale(0).moments[near];
       if (shared.count(near) > 0) {

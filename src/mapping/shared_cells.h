@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -11,21 +9,14 @@
 
 #include "gaussmap/map/gaussian_map.h"
 #include "gaussmap/map/moment_grid.h"
-#include "gaussmap/mapping/moving_points.h"
+#include "mapping/surface.h"
 
 namespace gaussmap {
-
-/// A flat piece of surface.
-struct Surface {
-  Eigen::Vector3d point;   ///< on it [m], about the centre of the cell
-  Eigen::Vector3d normal;  ///< unit length
-  double deviation;        ///< standard deviation of its points across it [m]
-};
 
 /// The finest cells that an object was in or beside, while scans first ... last saw it, and the surface there.
 struct SharedCell {
   std::uint32_t first_scan, last_scan;
-  std::optional<Surface> surface = std::nullopt;
+  std::optional<Surface<3>> surface = std::nullopt;
 };
 using SharedCells = std::unordered_map<std::size_t, SharedCell>;
 

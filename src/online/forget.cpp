@@ -63,8 +63,9 @@ void readjust(OnlineCells<D>& cells, std::uint32_t i, int scale) {
 }  // namespace
 
 template <int D>
-void forget(OnlineCells<D>& cells, const OnlineScan<D>& scan, const OnlineOptions& options,
-            const typename OnlineMapper<D>::Removed& removed, OnlineStatistics& statistics) {
+std::vector<GoneCell<D>> forget(OnlineCells<D>& cells, const OnlineScan<D>& scan, const OnlineOptions& options,
+                                const typename OnlineMapper<D>::Removed& removed, OnlineStatistics& statistics) {
+  std::vector<GoneCell<D>> all;
   const auto gone = [&](std::uint32_t i, std::size_t c, int scale) {
     ++statistics.deleted;
     if (!removed) return;
@@ -83,9 +84,11 @@ void forget(OnlineCells<D>& cells, const OnlineScan<D>& scan, const OnlineOption
       above = cells.cell(above, scale - 1).parent;
       changed[static_cast<std::size_t>(scale)].push_back(above);
     }
+    const OnlineCluster<D>& cluster = cells.cell(cell, 0).clusters[0];
+    all.push_back({cells.cell(cell, 0).key, cluster.evidence, cluster.log_odds});
     cells.erase(cell, gone);
   }
-  if (options.learning_rate == LearningRate::SampleMean) return;  // clusters are sums of what is left
+  if (options.learning_rate == LearningRate::SampleMean) return all;  // clusters are sums of what is left
   for (int scale = 1; scale < cells.scales(); ++scale) {
     std::vector<std::uint32_t>& list = changed[static_cast<std::size_t>(scale)];
     std::sort(list.begin(), list.end());
@@ -93,11 +96,12 @@ void forget(OnlineCells<D>& cells, const OnlineScan<D>& scan, const OnlineOption
     for (const std::uint32_t i : list)
       if (cells.cell(i, scale).alive) readjust(cells, i, scale);
   }
+  return all;
 }
 
-template void forget<2>(OnlineCells<2>&, const OnlineScan<2>&, const OnlineOptions&, const OnlineMapper<2>::Removed&,
-                        OnlineStatistics&);
-template void forget<3>(OnlineCells<3>&, const OnlineScan<3>&, const OnlineOptions&, const OnlineMapper<3>::Removed&,
-                        OnlineStatistics&);
+template std::vector<GoneCell<2>> forget<2>(OnlineCells<2>&, const OnlineScan<2>&, const OnlineOptions&,
+                                            const OnlineMapper<2>::Removed&, OnlineStatistics&);
+template std::vector<GoneCell<3>> forget<3>(OnlineCells<3>&, const OnlineScan<3>&, const OnlineOptions&,
+                                            const OnlineMapper<3>::Removed&, OnlineStatistics&);
 
 }  // namespace gaussmap

@@ -97,6 +97,7 @@ void addExactly(OnlineCells<D>& cells, OnlineScan<D>& scan, const OnlineOptions&
     if (cells.scales() > 1) cells.markStale(cells.cell(cell, 0).parent, 1);
     scan.touched.push_back(cell);
   }
+  scan.sums = std::move(sums);
 }
 
 /// Every scale learns by itself; within one, cells are independent, and a cell takes its points in the scan's order.

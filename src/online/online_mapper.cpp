@@ -29,6 +29,7 @@ void checkOptions(const OnlineOptions& options) {
   objects.link = options.link;
   objects.reach = options.reach;
   checkOptions(objects, options.map.resolution);
+  checkOptions(options.shared, options.map.resolution);
   ScanEvidenceOptions views;
   views.sight = options.sight;
   views.projection = options.projection;
@@ -73,7 +74,8 @@ struct OnlineMapper<D>::State {
   OnlineOptions options;
   OnlineCells<D> cells;
   Removed removed;
-  std::deque<View> views;  // the last look_back ones, oldest first
+  std::deque<View> views;          // the last look_back ones, oldest first
+  std::deque<ScanSums<D>> recent;  // of as many scans
   std::uint32_t scans = 0;
 
   std::optional<Projection> found;  // in an earlier scan ...
@@ -149,7 +151,14 @@ OnlineStatistics OnlineMapper<D>::add(const Scan& scan) {
     state.views.push_back(std::move(view));
     while (state.views.size() > static_cast<std::size_t>(options.look_back)) state.views.pop_front();
   }
-  if (options.forget) forget(state.cells, now, options, state.removed, statistics);
+  if (options.forget) {
+    const std::vector<GoneCell<D>> gone = forget(state.cells, now, options, state.removed, statistics);
+    if (now.sums && options.look_back > 0) {
+      state.recent.push_back({now.number, *std::move(now.sums)});
+      splitSharedCells(state.cells, now, gone, state.recent, options, state.removed, statistics);
+      while (state.recent.size() > static_cast<std::size_t>(options.look_back)) state.recent.pop_front();
+    }
+  }
   statistics.forget_time = watch.lap();
   if (options.refine_every > 0 && state.scans % static_cast<std::uint32_t>(options.refine_every) == 0)
     refineVisible(state.cells, now, options, statistics);
@@ -240,6 +249,7 @@ std::size_t OnlineMapper<D>::memoryBytes() const {
   for (const View& view : state_->views)
     bytes += static_cast<std::size_t>(view.image.rows()) * static_cast<std::size_t>(view.image.columns()) *
              sizeof(PixelRanges);
+  for (const ScanSums<D>& scan : state_->recent) bytes += scan.sums.memoryBytes();
   return bytes;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -25,6 +26,22 @@ struct OnlineScan {
   std::vector<std::uint32_t> touched;    // finest cells with points, in the order they were touched
   std::vector<std::uint32_t> new_cells;  // of them, those not there before
   std::vector<std::uint32_t> missed;     // finest cells that a range image sees through; may be there twice
+  std::optional<MomentGrid<D>> sums;     // of its points; LearningRate::SampleMean only
+};
+
+/// What is remembered of a scan that has become a part of the map.
+template <int D>
+struct ScanSums {
+  std::uint32_t number;
+  MomentGrid<D> sums;
+};
+
+/// A finest cell of an object that has gone.
+template <int D>
+struct GoneCell {
+  CellKey<D> key;
+  Evidence evidence;
+  float log_odds;
 };
 
 /// A range image and where it was taken.
@@ -70,10 +87,16 @@ template <int D>
 void countMisses(OnlineCells<D>& cells, OnlineScan<D>& scan, const View& view, const OnlineOptions& options,
                  OnlineStatistics& statistics);
 
-/// Deletes what is below 0, and what belongs to it; Yguel 2009, sec. 5.3.
+/// Deletes what is below 0, and what belongs to it; Yguel 2009, sec. 5.3. Returns the finest cells deleted.
 template <int D>
-void forget(OnlineCells<D>& cells, const OnlineScan<D>& scan, const OnlineOptions& options,
-            const typename OnlineMapper<D>::Removed& removed, OnlineStatistics& statistics);
+std::vector<GoneCell<D>> forget(OnlineCells<D>& cells, const OnlineScan<D>& scan, const OnlineOptions& options,
+                                const typename OnlineMapper<D>::Removed& removed, OnlineStatistics& statistics);
+
+/// Takes what the last scans saw of the object out of the cells beside it, where that lies off their surface.
+template <int D>
+void splitSharedCells(OnlineCells<D>& cells, const OnlineScan<D>& scan, const std::vector<GoneCell<D>>& gone,
+                      std::deque<ScanSums<D>>& recent, const OnlineOptions& options,
+                      const typename OnlineMapper<D>::Removed& removed, OnlineStatistics& statistics);
 
 /// Looks at the coarse cells with points of the scan, and gives clusters to the cells of the map that are known to need
 /// them most; Yguel 2009, sec. 5.1 (there: to the visible cells only).

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <functional>
 #include <iostream>
+#include <set>
 
 #include "gaussmap/evaluation/removal_score.h"
 #include "gaussmap/io/pcd_reader.h"
@@ -76,7 +77,10 @@ double online(const Sequence& sequence, double resolution) {
   OnlineOptions options;
   options.map = {resolution, 5, 3, 0.0};  // 0.2, 1, 5 m
   options.threads = 1;
-  OnlineMapper<3> mapper(options);
+  std::set<CellKey<3>> touched;  // cells that something was deleted from
+  OnlineMapper<3> mapper(options, [&](const RemovedCluster<3>& cluster) {
+    if (cluster.scale == 0) touched.insert(cluster.key);
+  });
   OnlineStatistics sum;
   const double start = now();
   for (const Scan& scan : sequence.scans) {
@@ -91,7 +95,11 @@ double online(const Sequence& sequence, double resolution) {
   const double seconds = now() - start;
   const GaussianMap<3> map = mapper.map();
   print("pcd2map --online", sequence.score([&](auto s, auto p) {
-    return !map.find(map.grid().keyOf(sequence.inMap(s, p)), 0).has_value();
+    // Gone with its cell; or, where a part of a cell was deleted, beyond three standard deviations of what is left.
+    const Eigen::Vector3d point = sequence.inMap(s, p);
+    const auto cell = map.find(map.grid().keyOf(point), 0);
+    return !cell ||
+           (touched.count(map.scale(0).keys[*cell]) > 0 && mahalanobisSquared<3>(point, map.gaussian(*cell, 0)) > 9.0);
   }),
         seconds, sequence.scans.size());
   std::printf(

@@ -41,6 +41,14 @@ struct CellMoments {
     return *this;
   }
 
+  /// Takes away a part of the points.
+  CellMoments& operator-=(const CellMoments& part) {
+    count -= part.count;
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] -= part.sum[i];
+    for (std::size_t i = 0; i < product.size(); ++i) product[i] -= part.product[i];
+    return *this;
+  }
+
   friend bool operator==(const CellMoments& a, const CellMoments& b) {
     return a.count == b.count && a.sum == b.sum && a.product == b.product;
   }

@@ -31,6 +31,8 @@ class MomentGrid {
   bool empty() const { return size_ == 0; }
   /// In order of first touch.
   const Cell& operator[](std::size_t index) const { return chunks_[index / kChunk][index % kChunk]; }
+  /// The sums of a cell, nothing if it has no point.
+  const CellMoments<D>* find(const CellKey<D>& key) const;
   /// Points counted so far.
   std::int64_t pointCount() const { return point_count_; }
 

@@ -17,6 +17,14 @@ struct MovingCellOptions {
   double reach = 0.5;        ///< how far an object reaches beyond its freed cells, at most [m]
 };
 
+/// In a cell that an object shares with a floor or wall, points are told apart by the surface that the scans saw while
+/// the object was not there.
+struct SharedCellOptions {
+  double reach = 0.6;      ///< how far around a cell the surface may be known from [m]
+  double flatness = 0.04;  ///< standard deviation across the surface, at most [m]: more is none
+  double noise = 0.01;     ///< a point within this or three standard deviations of the surface belongs to it [m]
+};
+
 /// Which finest cells of a map held an object that has moved; `evidence` as gatherEvidence() gives it. Three steps:
 /// - free: some scan hit it, but the log-odds of all scans are below 0;
 /// - restore: freed cells that hold together with few points are noise of sensor or pose;

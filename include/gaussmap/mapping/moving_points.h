@@ -13,14 +13,6 @@
 
 namespace gaussmap {
 
-/// In a cell that an object shares with a floor or wall, points are told apart by the surface that the scans saw while
-/// the object was not there.
-struct SharedCellOptions {
-  double reach = 0.6;      ///< how far around a cell the surface may be known from [m]
-  double flatness = 0.04;  ///< standard deviation across the surface, at most [m]: more is none
-  double noise = 0.01;     ///< a point within this or three standard deviations of the surface belongs to it [m]
-};
-
 struct MovingPointOptions {
   double resolution = 0.2;  ///< side of the finest cells [m]
   ScanEvidenceOptions evidence;

@@ -43,11 +43,12 @@ struct OnlineOptions {
   std::optional<double> no_return_is_free;  ///< pixels without return are free space up to this range [m]
   std::vector<double> max_ranges;  ///< per scale: cells farther from the sensor are not looked at [m]; none: no limit
   int occupancy_every = 1;         ///< scans, >= 1
-  int look_back = 10;              ///< so many range images are kept and asked about every new cell, >= 0
+  int look_back = 10;              ///< so many scans are kept: range images, asked about every new cell, and sums; >= 0
 
   bool forget = true;                        ///< delete clusters whose occupancy is below 0 ...
   double link = MovingCellOptions().link;    ///< ... and what hangs together with them over such gaps [m] ...
   double reach = MovingCellOptions().reach;  ///< ... so far away, and was only seen while they were [m]
+  SharedCellOptions shared;  ///< ... and, SampleMean only, what the last look_back scans saw of it beside a surface
 
   int refine_every = 10;         ///< scans; 0 = never
   std::size_t refine_cells = 0;  ///< p, most clusters added to a scale at a time; 0: as many as the budget allows (with
@@ -57,7 +58,8 @@ struct OnlineOptions {
   int threads = 0;  ///< 0 = all; never shows in the result
 };
 
-/// A deleted cluster and why it was deleted.
+/// A deleted cluster and why it was deleted. At the finest scale it may be a part of one: what an object left in a
+/// cell that it shared with a surface.
 template <int D>
 struct RemovedCluster {
   int scale = 0;
@@ -76,7 +78,7 @@ struct OnlineStatistics {
   std::size_t cells_new = 0;      ///< of them, those not seen before
   std::size_t cells_tested = 0;   ///< of the coarser scales, what culling looked at
   std::size_t cells_visited = 0;  ///< of the finest scale, what it left to look at
-  std::size_t deleted = 0;        ///< clusters, of all scales
+  std::size_t deleted = 0;        ///< clusters, of all scales, and parts of clusters
   std::size_t added = 0;          ///< clusters, by refinement
   std::vector<double> errors;     ///< per scale, mean error [6] of the cells that refinement looked at; empty if none
   // Seconds.
