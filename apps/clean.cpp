@@ -104,6 +104,8 @@ void run(CleanCommand command) {
     for (const ScanSource& scan : scans)
       if (!PcdReader(scan.path).header().find(command.labels))
         throw FileError(scan.path, "no field '" + command.labels + "' to score against");
+  const bool writes = !command.folder.empty() || !command.merged.empty() || !command.removed.empty();
+  for (std::size_t i = 0; writes && i < scans.size(); ++i) checkWritable(PcdReader(scans[i].path));
   const std::vector<std::filesystem::path> outputs = checkOutputs(command, scans);
 
   ProgressBar bar;
@@ -124,7 +126,7 @@ void run(CleanCommand command) {
       const std::vector<double> labels = reader.column(command.labels);
       for (std::size_t p = 0; p < labels.size(); ++p) score.add(labels[p] != 0.0, is_moving[p]);
     }
-    if (outputs.empty() && command.merged.empty() && command.removed.empty()) continue;
+    if (!writes) continue;
     PcdRecords records = readRecords(reader);
     if (!poseFault(records.viewpoint).empty()) records.viewpoint = scans[i].pose;  // --poses stands in for it
     const auto part = [&](const std::vector<bool>& keep, bool organised) {

@@ -71,9 +71,29 @@ bool sameFields(const std::vector<PcdField>& a, const std::vector<PcdField>& b) 
   });
 }
 
+/// Padding is left out.
+std::vector<PcdOutput> outputsOf(const std::vector<PcdField>& fields, const char* bytes, std::size_t record_size) {
+  std::vector<PcdOutput> outputs;
+  for (const PcdField& field : fields)
+    if (field.name != "_")
+      outputs.push_back(
+          {field.name, field.type, field.size, field.count, bytes ? bytes + field.offset : nullptr, record_size});
+  return outputs;
+}
+
 }  // namespace
 
+void checkWritable(const PcdReader& reader) {
+  const PcdHeader& header = reader.header();
+  try {
+    checkPcdFields(outputsOf(header.fields, nullptr, header.record_size));
+  } catch (const std::invalid_argument& error) {
+    throw FileError(reader.path(), std::string(error.what()) + ": it cannot be written again");
+  }
+}
+
 PcdRecords readRecords(const PcdReader& reader) {
+  checkWritable(reader);
   const PcdHeader& header = reader.header();
   return {header.fields, header.record_size, reader.records(), header.height > 1 ? header.width : 0, header.viewpoint};
 }
@@ -115,12 +135,8 @@ void append(PcdRecords& records, const PcdRecords& more) {
 }
 
 void writePcd(const std::filesystem::path& path, const PcdRecords& records) {
-  std::vector<PcdOutput> outputs;
-  for (const PcdField& field : records.fields)
-    if (field.name != "_")
-      outputs.push_back({field.name, field.type, field.size, field.count,
-                         records.bytes.empty() ? nullptr : records.bytes.data() + field.offset, records.record_size});
-  writePcd(path, records.size(), outputs, records.viewpoint, records.width);
+  writePcd(path, records.size(), outputsOf(records.fields, records.bytes.data(), records.record_size),
+           records.viewpoint, records.width);
 }
 
 }  // namespace gaussmap

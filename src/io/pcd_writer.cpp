@@ -20,24 +20,6 @@ namespace {
 constexpr std::size_t kBytesAtOnce = std::size_t{1} << 20;
 constexpr std::size_t kMostPoints = 0xFFFFFFFFu;  // WIDTH is read into 32 bits by everybody
 
-void checkFields(const std::vector<PcdOutput>& fields, std::size_t points) {
-  if (fields.empty()) throw std::invalid_argument("a PCD file needs at least one field");
-  std::set<std::string> names;
-  for (const PcdOutput& field : fields) {
-    const auto printable = [](char c) { return c > ' ' && c < '\x7F'; };
-    if (field.name.empty() || !std::all_of(field.name.begin(), field.name.end(), printable))
-      throw std::invalid_argument("PCD field '" + field.name + "': the name must be one word");
-    if (!names.insert(field.name).second) throw std::invalid_argument("PCD field '" + field.name + "' is there twice");
-    const bool wide = field.size == 4 || field.size == 8, narrow = field.size == 1 || field.size == 2;
-    const bool integer = field.type == 'I' || field.type == 'U';
-    if (!(field.type == 'F' && wide) && !(integer && (wide || narrow)))
-      throw std::invalid_argument("PCD field '" + field.name + "': no type " + std::string(1, field.type) +
-                                  std::to_string(field.size));
-    if (field.count == 0) throw std::invalid_argument("PCD field '" + field.name + "': count is 0");
-    if (!field.data && points > 0) throw std::invalid_argument("PCD field '" + field.name + "' has no data");
-  }
-}
-
 std::string header(std::size_t width, std::size_t height, const std::vector<PcdOutput>& fields, const Pose& viewpoint) {
   std::ostringstream text;
   text.imbue(std::locale::classic());  // a decimal comma would make the file unreadable
@@ -59,9 +41,28 @@ std::string header(std::size_t width, std::size_t height, const std::vector<PcdO
 
 }  // namespace
 
+void checkPcdFields(const std::vector<PcdOutput>& fields) {
+  if (fields.empty()) throw std::invalid_argument("a PCD file needs at least one field");
+  std::set<std::string> names;
+  for (const PcdOutput& field : fields) {
+    const auto printable = [](char c) { return c > ' ' && c < '\x7F'; };
+    if (field.name.empty() || !std::all_of(field.name.begin(), field.name.end(), printable))
+      throw std::invalid_argument("PCD field '" + field.name + "': the name must be one word");
+    if (!names.insert(field.name).second) throw std::invalid_argument("PCD field '" + field.name + "' is there twice");
+    const bool wide = field.size == 4 || field.size == 8, narrow = field.size == 1 || field.size == 2;
+    const bool integer = field.type == 'I' || field.type == 'U';
+    if (!(field.type == 'F' && wide) && !(integer && (wide || narrow)))
+      throw std::invalid_argument("PCD field '" + field.name + "': no type " + std::string(1, field.type) +
+                                  std::to_string(field.size));
+    if (field.count == 0) throw std::invalid_argument("PCD field '" + field.name + "': count is 0");
+  }
+}
+
 void writePcd(const std::filesystem::path& path, std::size_t points, const std::vector<PcdOutput>& fields,
               const std::optional<Pose>& viewpoint, std::size_t width) {
-  checkFields(fields, points);
+  checkPcdFields(fields);
+  for (const PcdOutput& field : fields)
+    if (!field.data && points > 0) throw std::invalid_argument("PCD field '" + field.name + "' has no data");
   if (points > kMostPoints) throw std::invalid_argument("a PCD file holds at most 2^32 - 1 points");
   if (width > 0 && points % width != 0)
     throw std::invalid_argument(std::to_string(points) + " points do not fill rows of " + std::to_string(width));

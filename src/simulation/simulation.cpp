@@ -25,7 +25,8 @@ Simulation corner(const SimulationOptions& options) {
   return {World(triangulate(demoScene())), interpolated(poses, scans, kStep), LidarOptions()};
 }
 
-Simulation street(const SimulationOptions& options) {
+/// Street or avenue: the same way through it, the same traffic.
+Simulation street(const TriangleMesh& mesh, const SimulationOptions& options) {
   const Pose placement = streetPlacement();
   std::vector<MovingObject> moving;
   if (options.moving)
@@ -34,7 +35,7 @@ Simulation street(const SimulationOptions& options) {
   LidarOptions lidar;
   lidar.rings = 64;
   lidar.max_range = 80.0;
-  return {World(transformed(streetMesh(), placement), std::move(moving)),
+  return {World(transformed(mesh, placement), std::move(moving)),
           drive(streetPath(), count(options, 20), {1.8, 4.7, 1.0}, placement), lidar};
 }
 
@@ -58,10 +59,13 @@ Simulation plan(const SimulationOptions& options) {
 Simulation makeSimulation(WorldName name, const SimulationOptions& options) {
   if (options.scans < 0)
     throw std::invalid_argument("scans = " + std::to_string(options.scans) + ": cannot be negative");
-  if (options.moving && name != WorldName::Street) throw std::invalid_argument("only the street has moving objects");
+  if (options.moving && name != WorldName::Street && name != WorldName::Avenue)
+    throw std::invalid_argument("only street and avenue have moving objects");
   switch (name) {
     case WorldName::Street:
-      return street(options);
+      return street(streetMesh(), options);
+    case WorldName::Avenue:
+      return street(avenueMesh(), options);
     case WorldName::Hall:
       return hall(options);
     case WorldName::Plan:

@@ -11,8 +11,9 @@
 // The built-in worlds: each in its own plan, with the pose that turns the plan into the map.
 namespace gaussmap::simulation {
 
-Pose streetPlacement();
+Pose streetPlacement();                     ///< of street and avenue
 TriangleMesh streetMesh();                  ///< plan
+TriangleMesh avenueMesh();                  ///< plan
 std::vector<MovingObject> streetTraffic();  ///< plan
 std::vector<Eigen::Vector2d> streetPath();  ///< plan
 

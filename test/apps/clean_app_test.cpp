@@ -189,6 +189,11 @@ TEST_F(CleanApp, SaysWhatIsWrong) {
   }
   expectDataError("no field 'class'", {"clean", scans(), "-o", own("c"), "--labels", "class"});
   expectDataError("none.pcd", {"clean", own("none.pcd"), "-o", own("c")});
+  std::string odd = postScan(1, {});  // numbers of three bytes: what cannot be written is told before any work
+  odd.replace(odd.find("SIZE 4 4 4 2 4 1"), 16, "SIZE 4 4 4 3 3 1");
+  const std::string odd_path = directory_.write("odd.pcd", odd).string();
+  expectDataError("odd.pcd: PCD field 'intensity'", {"clean", scan(0), odd_path, "-o", own("c")});
+  EXPECT_FALSE(std::filesystem::exists(own("c/scan0.pcd")));
   const std::string bare = directory_.write("bare.pcd", xyzHeader(1, "binary") + std::string(12, '\1')).string();
   const Outcome other = runApp({"clean", scan(0), bare, "--merged", own("m.pcd")});
   EXPECT_EQ(other.code, 1);

@@ -4,12 +4,11 @@
 #include "gaussmap/evaluation/nearest_distances.h"
 #include "gaussmap/io/pcd_reader.h"
 #include "gaussmap/mapping/accumulate_scans.h"
-#include "plain_street.h"
 
 namespace gaussmap::refinement {
 namespace {
 
-constexpr double kSpacing = 0.05;  // of the points on the truth [m]
+constexpr double kSpacing = 0.02;  // of the points on the truth [m]: a fifth of a finest cell
 constexpr double kObserved = 0.5;  // a surface counts as observed so near to a ray's end [m]
 
 /// The ends of rays are measured against too, but far away they stand metres apart, so that a map is blamed for
@@ -31,7 +30,7 @@ DataSet street(const std::string& name, const std::function<Simulation()>& make)
     data.truth = observedSurface(data.mesh, data.hits);
     return data;
   };
-  return {name, "points on the observed surface, 5 cm apart", {0.1, 10, 3}, {3.4, 4.0}, true, 0.0, load};
+  return {name, "points on the observed surface, 2 cm apart", {0.1, 10, 3}, {3.4, 4.0}, true, 0.0, load};
 }
 
 DataSet scan(const std::string& name, const std::filesystem::path& path, const MapOptions& options,
@@ -68,7 +67,7 @@ std::vector<DataSet> dataSets(const std::filesystem::path& data, int scans) {
   options.scans = scans;
   std::vector<DataSet> sets = {
       street("simulated street", [options] { return makeSimulation(WorldName::Street, options); }),
-      street("plain street", [options] { return benchmark_input::plainStreet(options); })};
+      street("simulated avenue", [options] { return makeSimulation(WorldName::Avenue, options); })};
   if (data.empty()) return sets;
   sets.push_back(scan("KITTI, one scan", data / "kitti_6scans/000000.pcd", {0.1, 10, 3}, 2.5, 2.5, 25.0));
   sets.push_back(scan("RGB-D office", data / "rgbd_office_single/office1.pcd", {0.02, 10, 3}, 2.5));

@@ -15,13 +15,18 @@ namespace {
 class Simulations : public testing::TestWithParam<WorldName> {};
 
 std::string nameOf(const testing::TestParamInfo<WorldName>& world) {
-  const char* const names[] = {"Corner", "Street", "Hall", "Plan"};
+  const char* const names[] = {"Corner", "Street", "Avenue", "Hall", "Plan"};
   return names[static_cast<std::size_t>(world.param)];
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Simulations,
-                         testing::Values(WorldName::Corner, WorldName::Street, WorldName::Hall, WorldName::Plan),
+                         testing::Values(WorldName::Corner, WorldName::Street, WorldName::Avenue, WorldName::Hall,
+                                         WorldName::Plan),
                          nameOf);
+
+bool hasTraffic(WorldName world) {
+  return world == WorldName::Street || world == WorldName::Avenue;
+}
 
 /// Fewer rays, no noise.
 void makeCheap(Simulation& simulation, int threads = 0) {
@@ -73,7 +78,7 @@ TEST_P(Simulations, DriveWithoutHittingAnything) {
 }
 
 TEST_P(Simulations, AreTheSameForTheSameSeedWithAnyNumberOfThreads) {
-  Simulation simulation = makeSimulation(GetParam(), {3, GetParam() == WorldName::Street});
+  Simulation simulation = makeSimulation(GetParam(), {3, hasTraffic(GetParam())});
   std::visit([](auto& sensor) { sensor.threads = 1; }, simulation.sensor);
   const SimulatedScan one = simulateScan(simulation, 1, 7);
   std::visit([](auto& sensor) { sensor.threads = 2; }, simulation.sensor);
@@ -146,8 +151,11 @@ TEST(CornerSimulation, TurnsBetweenTheGivenPoses) {
   }
 }
 
-TEST(StreetSimulation, LabelsPointsOnMovingObjectsAndNoOthers) {
-  Simulation street = makeSimulation(WorldName::Street, {0, true});
+class Traffic : public testing::TestWithParam<WorldName> {};
+INSTANTIATE_TEST_SUITE_P(All, Traffic, testing::Values(WorldName::Street, WorldName::Avenue), nameOf);
+
+TEST_P(Traffic, LabelsPointsOnMovingObjectsAndNoOthers) {
+  Simulation street = makeSimulation(GetParam(), {0, true});
   ASSERT_EQ(street.world.moving().size(), 5u);
   makeCheap(street);
   const MeshDistance still(street.world.mesh());
@@ -175,8 +183,8 @@ TEST(StreetSimulation, LabelsPointsOnMovingObjectsAndNoOthers) {
   for (std::size_t k = 3; k < 5; ++k) EXPECT_GT(points[k], 20u) << "pedestrian " << k;
 }
 
-TEST(StreetSimulation, LetsNothingCollide) {
-  const Simulation street = makeSimulation(WorldName::Street, {100, true});
+TEST_P(Traffic, LetsNothingCollide) {
+  const Simulation street = makeSimulation(GetParam(), {100, true});
   const MeshDistance still(street.world.mesh());
   for (const TimedPose& stop : street.trajectory) {
     std::vector<TriangleMesh> meshes;

@@ -22,7 +22,10 @@ struct PcdRecords {
   std::size_t size() const { return record_size > 0 ? bytes.size() / record_size : 0; }
 };
 
-/// Throws FileError as PcdReader::records().
+/// Throws FileError, naming the field, if the fields of a file cannot be written again: PCL has no floats of 3 bytes.
+void checkWritable(const PcdReader& reader);
+
+/// Throws FileError as PcdReader::records() and checkWritable().
 PcdRecords readRecords(const PcdReader& reader);
 
 /// Takes out the points whose flag is not set. In an organised cloud they stay, x, y and z NaN, as PCL's filters do it.

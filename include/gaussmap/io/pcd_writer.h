@@ -33,11 +33,15 @@ PcdOutput pcdOutput(std::string name, const T* data, std::size_t count = 1, std:
   return {std::move(name), type, sizeof(T), count, data, stride};
 }
 
+/// Throws std::invalid_argument, naming the field, for fields that no PCD file can have: no name or blanks in it, the
+/// same name twice, a type and size that there is not, a count of 0. Where the values are does not matter.
+void checkPcdFields(const std::vector<PcdOutput>& fields);
+
 /// Writes a binary PCD file (version 0.7) with any fields, whole or not at all (AtomicFile): one row of points, or rows
 /// of `width` points if that is not 0.
 /// The same input gives the same bytes. An empty cloud is written too, though PCL refuses to read one.
-/// Throws std::invalid_argument on fields that no PCD file can have (no name, blanks in it, twice the same name,
-/// unknown type, no data), a pose with a fault, or rows that are not full; FileError if the file cannot be written.
+/// Throws std::invalid_argument as checkPcdFields(), for a field without data, a pose with a fault, or rows that are not
+/// full; FileError if the file cannot be written.
 void writePcd(const std::filesystem::path& path, std::size_t points, const std::vector<PcdOutput>& fields,
               const std::optional<Pose>& viewpoint = std::nullopt, std::size_t width = 0);
 

@@ -15,15 +15,17 @@ namespace gaussmap {
 /// The built-in worlds. All are turned, so that no wall is aligned with the cells of a map.
 enum class WorldName {
   Corner,  ///< demoScene(): a floor, two walls and a pole
-  Street,  ///< 160 m of a street between building fronts, with trees, poles, parked cars and a fence; it climbs a
-           ///< little
+  Street,  ///< 150 m of a street between plane building fronts, with poles, some trees, parked cars and a fence; it
+           ///< climbs a little
+  Avenue,  ///< the same way between fronts with windows and oriels in relief, with 27 trees, vans and cars, lamps,
+           ///< benches, a side road and a park: much more shape in as many metres
   Hall,    ///< a high hall with columns, a corridor and four rooms, furnished
   Plan     ///< a floor plan: rooms along a corridor between walls of 12 cm, for a planar laser; z = 0 is its plane
 };
 
 struct SimulationOptions {
   int scans = 0;        ///< spread evenly over the same trajectory and time; 0: the number that suits the world
-  bool moving = false;  ///< Street only: three cars drive, two pedestrians walk
+  bool moving = false;  ///< Street and Avenue: three cars drive, two pedestrians walk
 };
 
 /// A world, a sensor, and its way through it.
