@@ -7,7 +7,7 @@ set -euo pipefail
 packages=(
   g++ cmake ninja-build ccache pkg-config
   libeigen3-dev libtbb-dev libnanoflann-dev libboost-dev   # core: algebra, threads, nearest neighbours, containers
-  libsqlite3-dev libzstd-dev liblzf-dev                    # core: map files, compressed PCD
+  libsqlite3-dev libzstd-dev liblzf-dev zlib1g-dev         # core: map files, compressed PCD, laser logs
   libpcl-dev                                               # the PCL edge
   libcli11-dev nlohmann-json3-dev                          # the command line
   libgtest-dev libbenchmark-dev liboctomap-dev             # tests, benchmarks and a peer for them

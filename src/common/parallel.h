@@ -10,6 +10,12 @@
 
 namespace gaussmap {
 
+/// How many threads `threads` means: 0 = all; never more than there are, for TBB warns of that on stderr.
+inline int threadCount(int threads) {
+  const int most = tbb::info::default_concurrency();
+  return threads <= 0 || threads > most ? most : threads;
+}
+
 /// Calls body(i) for every i in [0, count) on `threads` threads (0 = all). The bodies must not depend on each
 /// other: results belong into slot i, so that the number of threads never shows in them. `grain` = indices a task.
 template <typename Body>
@@ -18,9 +24,7 @@ void parallelFor(std::size_t count, int threads, std::size_t grain, const Body& 
     for (std::size_t i = 0; i < count; ++i) body(i);
     return;
   }
-  // TBB warns on stderr when it is asked for more threads than there are processors.
-  const int most = tbb::info::default_concurrency();
-  tbb::task_arena arena(threads <= 0 || threads > most ? most : threads);
+  tbb::task_arena arena(threadCount(threads));
   arena.execute([&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const tbb::blocked_range<std::size_t>& r) {
       for (std::size_t i = r.begin(); i != r.end(); ++i) body(i);

@@ -7,10 +7,10 @@
 #include <deque>
 #include <vector>
 
+#include "common/key_index.h"
 #include "gaussmap/gaussian/cell_moments.h"
 #include "gaussmap/map/grid.h"
 #include "gaussmap/occupancy/evidence.h"
-#include "online/key_index.h"
 
 namespace gaussmap {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "online/key_index.h"
+#include "common/key_index.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "gaussmap/gaussian/gaussian.h"
+#include "gaussmap/io/pose.h"
+#include "registration/map_neighbours.h"
+
+namespace gaussmap {
+
+/// Cost at a pose and its derivatives by (x, y, z, rotation vector about the sensor), map axes:
+/// cost = sum_i rho(d_i^2), rho(d^2) = d^2 / (1 + d^2 / k^2).
+struct NormalEquations {
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+  Matrix6 information = Matrix6::Zero();  ///< J' W J
+  Vector6 gradient = Vector6::Zero();     ///< half the derivative of the cost
+  double cost = 0.0;                      ///< Gaussians that meet nothing count k^2
+  std::size_t met = 0;                    ///< that meet a Gaussian of the map
+  std::size_t near = 0;                   ///< of these, within 3 standard deviations
+  double near_squared = 0.0;              ///< sum of their squared distances
+
+  NormalEquations& operator+=(const NormalEquations& other);
+};
+
+/// d^2 and its derivatives for a mean of the scan (moved, about the origin; `arm` = the same about the sensor) with a
+/// covariance (moved), against one Gaussian of the map widened by blur^2 [m^2].
+struct Residual {
+  Eigen::Matrix3d information;  ///< A of d^2 = r' A r
+  Eigen::Vector3d difference;   ///< r = mean of the scan - mean of the map [m]
+  double squared = 0.0;         ///< d^2
+};
+Residual residual(const Vector<3>& mean, const Matrix<3>& cov, const MapGaussian& target, double blur_squared);
+
+/// The normal equations of all Gaussians of a scan at a pose (about the origin of `near`).
+NormalEquations linearise(const std::vector<Gaussian<3>>& scan, const Pose& pose, MapNeighbours& near, double blur,
+                          double kernel, int threads);
+
+/// The pose moved by such a six-vector.
+Pose moved(const Pose& pose, const NormalEquations::Vector6& by);
+
+}  // namespace gaussmap
