@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <pcl/console/print.h>
+#include <pcl/pcl_base.h>
+#include <pcl/impl/pcl_base.hpp>  // a user's own point type has no other
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "gaussmap/io/planar_scan.h"
+#include "gaussmap/segments/segment_fitter.h"
+
+namespace gaussmap {
+
+/// SegmentFitter for PCL's clouds, one a sweep: setInputCloud(), setIndices() if only some points count, fit(); the
+/// next cloud, fit() ... and map(). Points in the SENSOR frame, its pose in sensor_origin_ and sensor_orientation_, as
+/// PCL's readers fill them. Any point type with x, y, z.
+template <typename PointT>
+class PointCloudSegmentFitter : public pcl::PCLBase<PointT> {
+ public:
+  /// Throws std::invalid_argument, naming the option.
+  explicit PointCloudSegmentFitter(const SegmentFitterOptions& options = {},
+                                   std::shared_ptr<SegmentUtility> utility = {})
+      : fitter_(options, std::move(utility)) {}
+
+  /// What of a cloud counts: a horizontal slice of a three-dimensional one, a largest range.
+  void setPlanarScan(const PlanarScanOptions& options) { planar_ = options; }
+
+  /// Adds the cloud to the map. A cloud that cannot be taken (none, in no plane, a pose that is none) changes nothing:
+  /// an error is printed, and the statistics are those of no beam; an empty one does so in silence.
+  SegmentStatistics fit() {
+    if (!this->initCompute()) {
+      PCL_ERROR("[gaussmap::PointCloudSegmentFitter::fit] no input cloud\n");
+      return {};
+    }
+    Scan scan;
+    const auto& cloud = *this->input_;
+    scan.pose.translation = cloud.sensor_origin_.template head<3>().template cast<double>();
+    scan.pose.rotation = cloud.sensor_orientation_.template cast<double>();
+    for (const auto index : *this->indices_)
+      scan.points.push_back(cloud[static_cast<std::size_t>(index)].getVector3fMap().template cast<double>());
+    this->deinitCompute();
+    if (scan.points.empty()) return {};
+    try {
+      if (const std::string fault = poseFault(scan.pose); !fault.empty()) throw std::invalid_argument(fault);
+      scan.pose = normalised(scan.pose);
+      return fitter_.add(planarScan(scan, planar_));
+    } catch (const std::invalid_argument& error) {
+      PCL_ERROR("[gaussmap::PointCloudSegmentFitter::fit] %s\n", error.what());
+      return {};
+    }
+  }
+
+  SegmentMap map() const { return fitter_.map(); }
+  const SegmentFitter& fitter() const { return fitter_; }
+
+ private:
+  SegmentFitter fitter_;
+  PlanarScanOptions planar_;
+};
+
+}  // namespace gaussmap

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "segments/line_moments.h"
+
+namespace gaussmap::segments {
+
+/// A short stretch along a segment.
+struct Cell {
+  LineMoments hits;      ///< of the observations that fell to it
+  double crossed = 0.0;  ///< rays that went through it
+};
+
+/// Cells of one length side by side along an axis: where on a segment its evidence lies.
+class CellRow {
+ public:
+  CellRow() = default;
+  CellRow(const Vector<2>& origin, const Vector<2>& axis, double size) : origin_(origin), axis_(axis), size_(size) {}
+
+  const Vector<2>& axis() const { return axis_; }
+  const Vector<2>& origin() const { return origin_; }
+  double size() const { return size_; }
+  double position(const Vector<2>& point) const { return axis_.dot(point - origin_); }
+  int index(const Vector<2>& point) const { return static_cast<int>(std::floor(position(point) / size_)); }
+  int first() const { return first_; }
+  int last() const { return first_ + static_cast<int>(cells_.size()); }  ///< behind the last
+  bool empty() const { return cells_.empty(); }
+  const std::vector<Cell>& cells() const { return cells_; }
+  std::vector<Cell>& cells() { return cells_; }
+
+  /// The cell with this index, made if there is none.
+  Cell& at(int index);
+  void add(const Vector<2>& point, double weight) { at(index(point)).hits.add(point, weight); }
+  /// Puts what is in the other row's cells into the cells where their means lie.
+  void absorb(const CellRow& other);
+  /// The same evidence along another axis.
+  CellRow turned(const Vector<2>& origin, const Vector<2>& axis) const;
+  /// Cells [first, last) of cells() alone, without empty ones at the ends.
+  CellRow slice(std::size_t first, std::size_t last) const;
+  /// Drops cells without observations at both ends.
+  void trim();
+  LineMoments total() const;
+  std::size_t bytes() const { return cells_.capacity() * sizeof(Cell); }
+
+ private:
+  Vector<2> origin_{0.0, 0.0}, axis_{1.0, 0.0};
+  double size_ = 1.0;
+  int first_ = 0;
+  std::vector<Cell> cells_;
+};
+
+}  // namespace gaussmap::segments

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "segments/evidence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace gaussmap::segments {
+namespace {
+
+class MomentCells : public EvidenceKeeper {
+ public:
+  void add(const std::vector<ObservationPoint>& observation, Evidence& evidence) const override {
+    LineMoments moments;
+    for (const ObservationPoint& point : observation) moments.add(point.position, point.weight);
+    evidence.row.at(evidence.row.index(moments.mean())).hits += moments;
+  }
+  void settle(double, std::uint64_t, Evidence&) const override {}
+};
+
+class ParticleSets : public EvidenceKeeper {
+ public:
+  ParticleSets(const ParticleOptions& options, double min_length)
+      : options_(options), longest_(options.longest * min_length) {}
+
+  void add(const std::vector<ObservationPoint>& observation, Evidence& evidence) const override {
+    for (const ObservationPoint& point : observation) evidence.particles.push_back(point.position.cast<float>());
+  }
+
+  void settle(double length, std::uint64_t number, Evidence& evidence) const override {
+    Random random = Random::forPart(options_.seed, number);
+    if (options_.limit == ParticleLimit::Segment)
+      limitSegment(length, random, evidence.particles);
+    else
+      limitBins(random, evidence);
+    if (4 * evidence.particles.capacity() > 5 * evidence.particles.size()) evidence.particles.shrink_to_fit();
+    for (Cell& cell : evidence.row.cells()) cell.hits = LineMoments();
+    const double weight = 1.0 / options_.samples;
+    for (const Particle& particle : evidence.particles) evidence.row.add(particle.cast<double>(), weight);
+    evidence.row.trim();
+  }
+
+ private:
+  /// Resampling without replacement from a uniform distribution over the particles, Leal 2000 sec. 4.4.
+  void limitSegment(double length, Random& random, std::vector<Particle>& particles) const {
+    const double limit = std::max(options_.per_metre * std::min(length, longest_), double(options_.samples));
+    while (static_cast<double>(particles.size()) > limit) {
+      std::swap(particles[random.below(particles.size())], particles.back());
+      particles.pop_back();
+    }
+  }
+
+  /// The same within each bin.
+  void limitBins(Random& random, Evidence& evidence) const {
+    const double per_bin = options_.per_metre * options_.bin;
+    const std::size_t limit = static_cast<std::size_t>(std::max(per_bin, double(options_.samples)));
+    const auto binOf = [&](const Particle& particle) {
+      return static_cast<int>(std::floor(evidence.row.position(particle.cast<double>()) / options_.bin));
+    };
+    int first = std::numeric_limits<int>::max(), last = std::numeric_limits<int>::min();
+    std::vector<int> bins;
+    for (const Particle& particle : evidence.particles) {
+      bins.push_back(binOf(particle));
+      first = std::min(first, bins.back());
+      last = std::max(last, bins.back());
+    }
+    // A counting sort, then the places of the first `limit` of each bin.
+    std::vector<std::size_t> ends(static_cast<std::size_t>(last - first + 2), 0);
+    for (const int bin : bins) ++ends[static_cast<std::size_t>(bin - first + 1)];
+    for (std::size_t i = 1; i < ends.size(); ++i) ends[i] += ends[i - 1];
+    std::vector<Particle> sorted(bins.size());
+    std::vector<std::size_t> at = ends;
+    for (std::size_t i = 0; i < bins.size(); ++i)
+      sorted[at[static_cast<std::size_t>(bins[i] - first)]++] = evidence.particles[i];
+    evidence.particles.clear();
+    for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+      std::size_t left = ends[i + 1] - ends[i];
+      for (; left > limit; --left) std::swap(sorted[ends[i] + random.below(left)], sorted[ends[i] + left - 1]);
+      for (std::size_t k = 0; k < left; ++k) evidence.particles.push_back(sorted[ends[i] + k]);
+    }
+  }
+
+  ParticleOptions options_;
+  double longest_;  // [m]
+};
+
+}  // namespace
+
+Evidence Evidence::slice(std::size_t first, std::size_t last) const {
+  Evidence part;
+  part.row = row.slice(first, last);
+  const int from = row.first() + static_cast<int>(first), to = row.first() + static_cast<int>(last);
+  for (const Particle& particle : particles) {
+    const int index = row.index(particle.cast<double>());
+    if (index >= from && index < to) part.particles.push_back(particle);
+  }
+  return part;
+}
+
+void Evidence::absorb(const Evidence& other) {
+  row.absorb(other.row);
+  particles.insert(particles.end(), other.particles.begin(), other.particles.end());
+}
+
+std::unique_ptr<EvidenceKeeper> makeEvidenceKeeper(const SegmentFitterOptions& options) {
+  if (options.policy == EvidencePolicy::ParticleSets)
+    return std::make_unique<ParticleSets>(options.particles, options.min_length);
+  return std::make_unique<MomentCells>();
+}
+
+}  // namespace gaussmap::segments

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <deque>
+
+#include "gaussmap/segments/segment_map.h"
+#include "segments/live_segment.h"
+
+namespace gaussmap::segments {
+
+/// Segments in the map frame, chain by chain, linked neighbours joined where their lines meet.
+SegmentMap outputMap(const std::deque<LiveSegment>& segments, const Vector<2>& origin);
+
+}  // namespace gaussmap::segments

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "segments/worth.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace gaussmap::segments {
+
+double Worth::explained(const LineMoments& hits, const LineFit& line) const {
+  const double ratio = hits.squaredDistance(line.center, line.normal()) / (tolerance * tolerance);
+  return ratio < 1.0 ? hits.n * (1.0 - ratio * ratio * ratio) : 0.0;
+}
+
+double Worth::costOfCell(const std::vector<Cell>& cells, std::size_t i) const {
+  // A single empty cell is no hole: what moves from one row to another may fall to its neighbours.
+  const auto empty = [&](std::size_t k) { return k < cells.size() && cells[k].hits.n <= 0.0; };
+  const bool hole = empty(i) && ((i > 0 && empty(i - 1)) || empty(i + 1));
+  return cell_cost + crossing_cost * cells[i].crossed + (hole ? hole_cost : 0.0);
+}
+
+double Worth::costOf(const std::vector<Cell>& cells) const {
+  double sum = segment_cost;
+  for (std::size_t i = 0; i < cells.size(); ++i) sum += costOfCell(cells, i);
+  return sum;
+}
+
+double Worth::of(const LiveSegment& segment) const {
+  const std::vector<Cell>& cells = segment.evidence.row.cells();
+  double sum = -costOf(cells);
+  for (const Cell& cell : cells)
+    if (cell.hits.n > 0.0) sum += explained(cell.hits, segment.line);
+  return sum;
+}
+
+std::vector<CellRange> worthKeeping(const CellRow& row, const LineFit& line, const Worth& worth) {
+  const std::vector<Cell>& cells = row.cells();
+  // Of the cells before number i: the highest worth of all choices, and of those that keep cell i - 1, with the cell
+  // that the stretch of that one begins with.
+  std::vector<double> best(cells.size() + 1, 0.0), kept(cells.size() + 1, -std::numeric_limits<double>::infinity());
+  std::vector<std::size_t> begun(cells.size() + 1, 0);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    double own = -worth.costOfCell(cells, i);
+    if (cells[i].hits.n > 0.0) own += worth.explained(cells[i].hits, line);
+    const double anew = best[i] - worth.segment_cost;
+    begun[i + 1] = kept[i] >= anew ? begun[i] : i;
+    kept[i + 1] = std::max(kept[i], anew) + own;
+    best[i + 1] = std::max(best[i], kept[i + 1]);
+  }
+  std::vector<CellRange> ranges;
+  for (std::size_t i = cells.size(); i > 0;) {
+    if (best[i] > best[i - 1]) {
+      ranges.push_back({begun[i], i, best[i] - best[begun[i]]});
+      i = begun[i];
+    } else {
+      --i;
+    }
+  }
+  std::reverse(ranges.begin(), ranges.end());
+  return ranges;
+}
+
+}  // namespace gaussmap::segments

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gaussmap/pcl/segment_fitter.h"
+
+#include <gtest/gtest.h>
+#include <pcl/point_types.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "gaussmap/simulation/simulation.h"
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpedantic"
+/// A user's own point type.
+struct EIGEN_ALIGN16 BeamPoint {
+  PCL_ADD_POINT4D;
+  float echo;
+  PCL_MAKE_ALIGNED_OPERATOR_NEW
+};
+#pragma GCC diagnostic pop
+
+namespace gaussmap {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+template <typename PointT>
+typename pcl::PointCloud<PointT>::Ptr cloudOf(const SimulatedScan& scan) {
+  auto cloud = pcl::make_shared<pcl::PointCloud<PointT>>();
+  for (const Eigen::Vector3d& point : scan.points) {
+    PointT made{};
+    made.getVector3fMap() = point.cast<float>();
+    cloud->push_back(made);
+  }
+  cloud->sensor_origin_.template head<3>() = scan.pose.translation.cast<float>();
+  cloud->sensor_orientation_ = Eigen::Quaterniond(scan.pose.rotation).cast<float>();
+  return cloud;
+}
+
+std::vector<SimulatedScan> planScans(int count) {
+  const Simulation plan = makeSimulation(WorldName::Plan, {count, false});
+  std::vector<SimulatedScan> scans;
+  for (std::size_t i = 0; i < plan.trajectory.size(); ++i) scans.push_back(simulateScan(plan, i));
+  return scans;
+}
+
+void expectSameMap(const SegmentMap& a, const SegmentMap& b) {
+  ASSERT_EQ(a.segments.size(), b.segments.size());
+  for (std::size_t i = 0; i < a.segments.size(); ++i) {
+    EXPECT_EQ(a.segments[i].start, b.segments[i].start);
+    EXPECT_EQ(a.segments[i].end, b.segments[i].end);
+  }
+}
+
+template <typename PointT>
+SegmentMap mapThroughPcl(const std::vector<SimulatedScan>& scans) {
+  PointCloudSegmentFitter<PointT> fitter;
+  for (const SimulatedScan& scan : scans) {
+    fitter.setInputCloud(cloudOf<PointT>(scan));
+    EXPECT_GT(fitter.fit().beams, 100u);
+  }
+  return fitter.map();
+}
+
+TEST(PointCloudSegmentFitter, MakesTheMapOfTheCore) {
+  const std::vector<SimulatedScan> scans = planScans(12);
+  SegmentFitter core;
+  for (const SimulatedScan& scan : scans) {
+    const auto cloud = cloudOf<pcl::PointXYZ>(scan);  // floats, as PCL has them
+    Scan same{{}, {}, 0};
+    same.pose.translation = cloud->sensor_origin_.head<3>().cast<double>();
+    same.pose.rotation = cloud->sensor_orientation_.cast<double>();
+    same.pose = normalised(same.pose);
+    for (const pcl::PointXYZ& point : *cloud) same.points.push_back(point.getVector3fMap().cast<double>());
+    core.add(planarScan(same));
+  }
+  ASSERT_GT(core.map().segments.size(), 5u);
+  expectSameMap(mapThroughPcl<pcl::PointXYZ>(scans), core.map());
+}
+
+TEST(PointCloudSegmentFitter, TakesAnyPointType) {
+  const std::vector<SimulatedScan> scans = planScans(4);
+  expectSameMap(mapThroughPcl<BeamPoint>(scans), mapThroughPcl<pcl::PointXYZ>(scans));
+  expectSameMap(mapThroughPcl<pcl::PointXYZI>(scans), mapThroughPcl<pcl::PointXYZ>(scans));
+}
+
+TEST(PointCloudSegmentFitter, CountsOnlyThePointsOfItsIndices) {
+  const SimulatedScan scan = planScans(1).front();
+  auto cloud = cloudOf<pcl::PointXYZ>(scan);
+  auto half = pcl::make_shared<pcl::Indices>();
+  for (std::size_t i = 0; i < cloud->size() / 2; ++i) half->push_back(static_cast<pcl::index_t>(i));
+  PointCloudSegmentFitter<pcl::PointXYZ> some, cut;
+  some.setInputCloud(cloud);
+  some.setIndices(half);
+  const SegmentStatistics statistics = some.fit();
+  cloud->resize(half->size());
+  cut.setInputCloud(cloud);
+  EXPECT_EQ(statistics.beams, cut.fit().beams);
+  expectSameMap(some.map(), cut.map());
+}
+
+TEST(PointCloudSegmentFitter, LeavesOutPointsThatAreNone) {
+  auto cloud = cloudOf<pcl::PointXYZ>(planScans(1).front());
+  PointCloudSegmentFitter<pcl::PointXYZ> fitter;
+  const std::size_t returns = static_cast<std::size_t>(
+      std::count_if(cloud->begin(), cloud->end(), [](const auto& p) { return std::isfinite(p.x); }));
+  for (std::size_t i = 20; i < 30; ++i) (*cloud)[i].x = (*cloud)[i].y = (*cloud)[i].z = kNan;
+  fitter.setInputCloud(cloud);
+  EXPECT_EQ(fitter.fit().beams, returns - 10);
+}
+
+TEST(PointCloudSegmentFitter, ChangesNothingForACloudThatItCannotTake) {
+  PointCloudSegmentFitter<pcl::PointXYZ> fitter;
+  EXPECT_EQ(fitter.fit().beams, 0u);  // no cloud
+  fitter.setInputCloud(pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>());
+  EXPECT_EQ(fitter.fit().beams, 0u);
+  auto high = cloudOf<pcl::PointXYZ>(planScans(1).front());
+  (*high)[3].z = 7.0f;  // in no plane
+  fitter.setInputCloud(high);
+  EXPECT_EQ(fitter.fit().beams, 0u);
+  auto lost = cloudOf<pcl::PointXYZ>(planScans(1).front());
+  lost->sensor_origin_.x() = kNan;
+  fitter.setInputCloud(lost);
+  EXPECT_EQ(fitter.fit().beams, 0u);
+  EXPECT_TRUE(fitter.map().segments.empty());
+  EXPECT_EQ(fitter.fitter().scans(), 0u);
+}
+
+TEST(PointCloudSegmentFitter, TakesASliceOfASpace) {
+  auto cloud = cloudOf<pcl::PointXYZ>(planScans(1).front());
+  const std::size_t count = cloud->size();
+  for (std::size_t i = 0; i < count; ++i) {
+    pcl::PointXYZ above = (*cloud)[i];
+    above.z += 2.0f;
+    cloud->push_back(above);
+  }
+  PlanarScanOptions slice;
+  slice.slice = true;
+  slice.z_min = -0.5;
+  slice.z_max = 0.5;
+  PointCloudSegmentFitter<pcl::PointXYZ> fitter;
+  fitter.setPlanarScan(slice);
+  fitter.setInputCloud(cloud);
+  EXPECT_GT(fitter.fit().beams, 100u);
+  EXPECT_FALSE(fitter.map().segments.empty());
+}
+
+}  // namespace
+}  // namespace gaussmap
