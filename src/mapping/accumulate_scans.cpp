@@ -82,16 +82,18 @@ void forBlocks(const PcdReader& reader, int threads, const Body& body) {
     tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t{0}, tasks, task); });
 }
 
-}  // namespace
+/// Sums and counts of one thread.
+struct Partial {
+  MomentGrid<3> moments;
+  PointCounts counts;
+};
+using Partials = tbb::enumerable_thread_specific<Partial>;
 
-AccumulatedScans accumulateScans(const std::vector<ScanSource>& scans, const AccumulateOptions& options,
-                                 const std::function<void(const AccumulateProgress&)>& progress) {
+/// Counts the points of all scans; full(partial) is called after every block, by the thread whose sums they are.
+template <typename Full>
+void accumulate(const std::vector<ScanSource>& scans, const AccumulateOptions& options, Partials& partials,
+                const Full& full, const std::function<void(const AccumulateProgress&)>& progress) {
   checkOptions(options);
-  struct Partial {
-    MomentGrid<3> moments;
-    PointCounts counts;
-  };
-  tbb::enumerable_thread_specific<Partial> partials([&] { return Partial{MomentGrid<3>(options.resolution), {}}; });
   std::mutex progress_mutex;
   AccumulateProgress done{0, scans.size(), 0, 0};
   parallelFor(scans.size(), options.threads, 1, [&](std::size_t index) {
@@ -107,6 +109,7 @@ AccumulatedScans accumulateScans(const std::vector<ScanSource>& scans, const Acc
       } catch (const std::out_of_range& error) {
         throw std::out_of_range(scan.path.string() + ": " + error.what());
       }
+      full(partial);
     });
     if (!progress) return;
     const std::lock_guard lock(progress_mutex);
@@ -115,7 +118,15 @@ AccumulatedScans accumulateScans(const std::vector<ScanSource>& scans, const Acc
     done.cells = std::max(done.cells, partials.local().moments.size());
     progress(done);
   });
+}
 
+}  // namespace
+
+AccumulatedScans accumulateScans(const std::vector<ScanSource>& scans, const AccumulateOptions& options,
+                                 const std::function<void(const AccumulateProgress&)>& progress) {
+  Partials partials([&] { return Partial{MomentGrid<3>(options.resolution), {}}; });
+  accumulate(
+      scans, options, partials, [](const Partial&) {}, progress);
   AccumulatedScans all{MomentGrid<3>(options.resolution), {}};
   for (Partial& partial : partials) {
     all.counts += partial.counts;
@@ -125,6 +136,32 @@ AccumulatedScans accumulateScans(const std::vector<ScanSource>& scans, const Acc
       all.moments.merge(partial.moments);
   }
   return all;
+}
+
+PointCounts accumulateScansInParts(const std::vector<ScanSource>& scans, const AccumulateOptions& options,
+                                   std::size_t most_bytes, const std::function<void(const MomentGrid<3>&)>& take,
+                                   const std::function<void(const AccumulateProgress&)>& progress) {
+  Partials partials([&] { return Partial{MomentGrid<3>(options.resolution), {}}; });
+  const auto threads = static_cast<std::size_t>(threadCount(options.threads));
+  std::mutex mutex;
+  const auto hand_over = [&](Partial& partial) {
+    if (partial.moments.empty()) return;
+    const std::lock_guard lock(mutex);
+    take(partial.moments);
+    partial.moments = MomentGrid<3>(options.resolution);
+  };
+  accumulate(
+      scans, options, partials,
+      [&](Partial& partial) {
+        if (partial.moments.memoryBytes() > most_bytes / threads) hand_over(partial);
+      },
+      progress);
+  PointCounts counts;
+  for (Partial& partial : partials) {
+    counts += partial.counts;
+    hand_over(partial);
+  }
+  return counts;
 }
 
 std::vector<Vector<3>> readScans(const std::vector<ScanSource>& scans, const AccumulateOptions& options) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "gaussmap/map/occupancy.h"
+#include "mapping/areas.h"
 #include "refine_scale.h"
 
 namespace gaussmap {
@@ -24,26 +25,6 @@ void checkOptions(const RefineOptions& options, int scales) {
   if (options.queue < 0) refuse("queue", options.queue, "at least 1 (0 = automatic)");
   if (options.max_swaps < 0) refuse("max_swaps", options.max_swaps, "at least 0");
   if (options.threads < 0) refuse("threads", options.threads, "at least 1 (0 = all)");
-}
-
-/// Occupied finest cells under each Gaussian of the finest scale: Gaussians that share a cell share it evenly.
-template <int D>
-std::vector<double> finestAreas(const MapScale<D>& finest) {
-  std::vector<double> areas;
-  areas.reserve(finest.gaussianCount());
-  for (std::size_t cell = 0; cell < finest.keys.size(); ++cell) {
-    const std::size_t count = gaussiansOf(finest, cell).size();
-    areas.insert(areas.end(), count, 1.0 / static_cast<double>(count));
-  }
-  return areas;
-}
-
-/// The same for the coarser scale, through the links.
-template <int D>
-std::vector<double> coarserAreas(const MapScale<D>& finer, const std::vector<double>& finer_areas, std::size_t count) {
-  std::vector<double> areas(count, 0.0);
-  for (std::size_t i = 0; i < finer_areas.size(); ++i) areas[finer.parent[i]] += finer_areas[i];
-  return areas;
 }
 
 /// Makes every coarse scale anew from the finer one and lets refineScale(scale, areas) refine it.

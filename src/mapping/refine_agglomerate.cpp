@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <utility>
+
 #include "common/parallel.h"
 #include "gaussmap/clustering/agglomerate.h"
 #include "mapping/blur.h"
@@ -51,6 +53,12 @@ ScaleCuts<D>::ScaleCuts(const CoarseScale<D>& scale, const std::vector<double>& 
 }
 
 template <int D>
+ScaleCuts<D>::ScaleCuts(const CoarseScale<D>& scale, std::vector<Dendrogram> dendrograms, int threads)
+    : scale_(scale), threads_(threads), dendrograms_(std::move(dendrograms)), gains_(dendrograms_.size()) {
+  for (std::size_t cell = 0; cell < gains_.size(); ++cell) gains_[cell] = gainsOfUndoing(dendrograms_[cell]);
+}
+
+template <int D>
 std::size_t ScaleCuts<D>::mostExtra() const {
   std::size_t most = 0;
   for (const Dendrogram& dendrogram : dendrograms_) most += dendrogram.merges.size();
@@ -59,7 +67,11 @@ std::size_t ScaleCuts<D>::mostExtra() const {
 
 template <int D>
 std::vector<CellClusters<D>> ScaleCuts<D>::clusters(std::size_t extra) const {
-  const std::vector<std::size_t> parts = partsPerCell(gains_, extra);
+  return clusters(partsPerCell(gains_, extra));
+}
+
+template <int D>
+std::vector<CellClusters<D>> ScaleCuts<D>::clusters(const std::vector<std::size_t>& parts) const {
   std::vector<CellClusters<D>> clusters(scale_.cells());
   parallelFor(scale_.cells(), threads_, 16,
               [&](std::size_t cell) { clusters[cell] = clustersOf(scale_, cell, dendrograms_[cell], parts[cell]); });

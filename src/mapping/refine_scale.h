@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "gaussmap/clustering/agglomerate.h"
 #include "gaussmap/mapping/coarsen.h"
 #include "gaussmap/mapping/refine.h"
 
@@ -30,6 +31,27 @@ struct ScaleCut {
   std::vector<Gaussian<D>> gaussians;
   std::vector<std::uint32_t> parent;  // of each Gaussian of the finer scale
 };
+
+/// How many Gaussians a multiple of its cells allows a scale beyond one a cell.
+inline std::size_t extraGaussians(double multiple, std::size_t cells, std::size_t finer_gaussians) {
+  const double most = std::floor(multiple * static_cast<double>(cells));
+  // More than one per finer Gaussian is never used; the bound also keeps the conversion in range.
+  const auto all = static_cast<std::size_t>(std::min(most, static_cast<double>(finer_gaussians)));
+  return all - std::min(all, cells);
+}
+
+/// The same by the options: max_gaussians of this scale if given, else the budget.
+/// Throws std::invalid_argument if max_gaussians leaves a cell without a Gaussian.
+inline std::size_t extraGaussians(const RefineOptions& options, int scale, std::size_t cells,
+                                  std::size_t finer_gaussians) {
+  const auto most = options.max_gaussians.find(scale);
+  if (most == options.max_gaussians.end()) return extraGaussians(options.budget, cells, finer_gaussians);
+  if (most->second < cells)
+    throw std::invalid_argument("max_gaussians = " + std::to_string(most->second) + ": scale " + std::to_string(scale) +
+                                " has " + std::to_string(cells) +
+                                " occupied cells, which hold at least one each; take coarser cells");
+  return most->second - cells;
+}
 
 /// One coarse scale fresh from coarsen(), about to be refined.
 template <int D>
@@ -53,23 +75,10 @@ struct CoarseScale {
     return data;
   }
 
-  /// How many Gaussians a multiple of the cells allows beyond one a cell.
-  std::size_t extraOf(double multiple) const {
-    const double most = std::floor(multiple * static_cast<double>(cells()));
-    // More than one per finer Gaussian is never used; the bound also keeps the conversion in range.
-    const auto all = static_cast<std::size_t>(std::min(most, static_cast<double>(finer.gaussianCount())));
-    return all - std::min(all, cells());
-  }
-  /// The same by the options: max_gaussians of this scale if given, else the budget.
-  /// Throws std::invalid_argument if max_gaussians leaves a cell without a Gaussian.
+  /// extraGaussians() of this scale.
+  std::size_t extraOf(double multiple) const { return extraGaussians(multiple, cells(), finer.gaussianCount()); }
   std::size_t extraAllowed(const RefineOptions& options) const {
-    const auto most = options.max_gaussians.find(finer_scale + 1);
-    if (most == options.max_gaussians.end()) return extraOf(options.budget);
-    if (most->second < cells())
-      throw std::invalid_argument("max_gaussians = " + std::to_string(most->second) + ": scale " +
-                                  std::to_string(finer_scale + 1) + " has " + std::to_string(cells()) +
-                                  " occupied cells, which hold at least one each; take coarser cells");
-    return most->second - cells();
+    return extraGaussians(options, finer_scale + 1, cells(), finer.gaussianCount());
   }
 
   ScaleCut<D> cutInto(const std::vector<CellClusters<D>>& clusters) const {
@@ -109,6 +118,8 @@ class ScaleCuts {
  public:
   /// `areas` = occupied finest cells under each finer Gaussian. The scale must outlive the cuts.
   ScaleCuts(const CoarseScale<D>& scale, const std::vector<double>& areas, const RefineOptions& options);
+  /// The same from dendrograms() made before.
+  ScaleCuts(const CoarseScale<D>& scale, std::vector<Dendrogram> dendrograms, int threads);
 
   int scale() const { return scale_.finer_scale + 1; }
   const std::vector<CellKey<D>>& keys() const { return scale_.coarse.keys; }
@@ -116,9 +127,14 @@ class ScaleCuts {
   std::size_t extraAllowed(const RefineOptions& options) const { return scale_.extraAllowed(options); }
   /// The Gaussians that the finer scale allows beyond one a cell.
   std::size_t mostExtra() const;
+  const std::vector<Dendrogram>& dendrograms() const { return dendrograms_; }
+  /// gainsOfUndoing() of every cell.
+  const std::vector<std::vector<double>>& gains() const { return gains_; }
 
   /// The clusters of every cell when `extra` Gaussians are there beyond one a cell.
   std::vector<CellClusters<D>> clusters(std::size_t extra) const;
+  /// The clusters when every cell is cut into so many parts.
+  std::vector<CellClusters<D>> clusters(const std::vector<std::size_t>& parts) const;
   ScaleCut<D> cut(std::size_t extra) const;
 
  private:

@@ -60,6 +60,13 @@ struct AccumulatedScans {
 AccumulatedScans accumulateScans(const std::vector<ScanSource>& scans, const AccumulateOptions& options,
                                  const std::function<void(const AccumulateProgress&)>& progress = {});
 
+/// The same within limited memory: the sums of a thread are handed over whenever all threads together may hold more
+/// than `most_bytes` of them, and at the end. One call of `take` at a time, in no fixed order; each point is in one of
+/// them.
+PointCounts accumulateScansInParts(const std::vector<ScanSource>& scans, const AccumulateOptions& options,
+                                   std::size_t most_bytes, const std::function<void(const MomentGrid<3>&)>& take,
+                                   const std::function<void(const AccumulateProgress&)>& progress = {});
+
 /// The accepted points of scans, in their order [m, map frame]: the reference that a map is compared with.
 std::vector<Vector<3>> readScans(const std::vector<ScanSource>& scans, const AccumulateOptions& options);
 
