@@ -30,10 +30,7 @@ Eigen::Vector3d originOf(const PcdHeader& header) {
 
 }  // namespace
 
-void saveMapPcd(const GaussianMap<3>& map, const std::filesystem::path& path, const ExportOptions& options) {
-  std::error_code error;
-  if (!options.overwrite && std::filesystem::exists(path, error)) throw FileError(path, "exists already and is kept");
-  const GaussianRecords all = toRecords(map, options.scale);
+void writeRecordsPcd(const GaussianRecords& all, const std::filesystem::path& path) {
   const GaussianRecord empty{};
   const GaussianRecord& first = all.records.empty() ? empty : all.records.front();
   constexpr std::size_t kStride = sizeof(GaussianRecord);
@@ -49,7 +46,13 @@ void saveMapPcd(const GaussianMap<3>& map, const std::filesystem::path& path, co
            viewpoint);
 }
 
-GaussianMap<3> loadMapPcd(const std::filesystem::path& path) {
+void saveMapPcd(const GaussianMap<3>& map, const std::filesystem::path& path, const ExportOptions& options) {
+  std::error_code error;
+  if (!options.overwrite && std::filesystem::exists(path, error)) throw FileError(path, "exists already and is kept");
+  writeRecordsPcd(toRecords(map, options.scale), path);
+}
+
+GaussianRecords readRecordsPcd(const std::filesystem::path& path) {
   const PcdReader reader(path);
   if (reader.header().find("covariance") == nullptr)
     throw FileError(path, "is a cloud of points, not of Gaussians: its fields lack 'covariance'");
@@ -73,6 +76,15 @@ GaussianMap<3> loadMapPcd(const std::filesystem::path& path) {
       record.scale = static_cast<float>(columns[6][i]);
       all.records.push_back(record);
     }
+    return all;
+  } catch (const std::logic_error& error) {
+    throw FileError(path, std::string("is no map: ") + error.what());
+  }
+}
+
+GaussianMap<3> loadMapPcd(const std::filesystem::path& path) {
+  const GaussianRecords all = readRecordsPcd(path);
+  try {
     return fromRecords(all);
   } catch (const std::logic_error& error) {
     throw FileError(path, std::string("is no map: ") + error.what());

@@ -93,7 +93,6 @@ void checkWritable(const PcdReader& reader) {
 }
 
 PcdRecords readRecords(const PcdReader& reader) {
-  checkWritable(reader);
   const PcdHeader& header = reader.header();
   return {header.fields, header.record_size, reader.records(), header.height > 1 ? header.width : 0, header.viewpoint};
 }

@@ -46,29 +46,36 @@ Database::Database(const std::filesystem::path& path, Mode mode) : path_(path), 
   const bool read_only = mode == Mode::ReadOnly;
   sqlite3* raw = nullptr;
   const int code =
-      read_only ? sqlite3_open_v2(immutableUri(path).c_str(), &raw, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr)
-                : sqlite3_open_v2(mode == Mode::InMemory ? ":memory:" : absolutePath(path).c_str(), &raw,
-                                  SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
+      read_only
+          ? sqlite3_open_v2(immutableUri(path).c_str(), &raw, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr)
+          : sqlite3_open_v2(
+                mode == Mode::InMemory ? ":memory:" : absolutePath(path).c_str(), &raw,
+                mode == Mode::ChangeCopy ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
   handle_.reset(raw);
   if (code != SQLITE_OK) fail("cannot be opened");
-  if (read_only)
-    limitReading();
-  else  // a file written beside its target needs no journal: if the writer dies, nobody has seen it
+  if (read_only || mode == Mode::ChangeCopy) distrust();
+  if (!read_only)  // a file written beside its target needs no journal: if the writer dies, nobody has seen it
     execute("PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF;");
 }
 
-void Database::limitReading() {
+void Database::distrust() {
   std::error_code error;
   const std::uintmax_t bytes = std::filesystem::file_size(path_, error);
   if (error) throw FileError(path_, "cannot be read: " + error.message());
   constexpr std::uintmax_t kLongest = 1000000000;  // SQLite's own limit
   sqlite3_limit(handle(), SQLITE_LIMIT_LENGTH, static_cast<int>(std::clamp<std::uintmax_t>(bytes, 100000, kLongest)));
-  sqlite3_db_config(handle(), SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+  for (const int danger : {SQLITE_DBCONFIG_TRUSTED_SCHEMA, SQLITE_DBCONFIG_ENABLE_TRIGGER, SQLITE_DBCONFIG_ENABLE_VIEW})
+    sqlite3_db_config(handle(), danger, 0, nullptr);
   // Pages that point to each other in a ring, or a view in the place of a table, would else be read for ever. A row
   // takes some 20 steps and at least 20 bytes.
-  steps_left_ = std::make_unique<std::int64_t>(1000 + static_cast<std::int64_t>(bytes / 100));
+  most_steps_ = 1000 + static_cast<std::int64_t>(bytes / 100);
+  steps_left_ = std::make_unique<std::int64_t>(most_steps_);
   sqlite3_progress_handler(
       handle(), 1000, [](void* left) { return --*static_cast<std::int64_t*>(left) < 0 ? 1 : 0; }, steps_left_.get());
+}
+
+void Database::renewSteps() const {
+  if (steps_left_) *steps_left_ = most_steps_;
 }
 
 void Database::execute(const std::string& sql) {
@@ -84,6 +91,7 @@ void Database::fail() const {
 }
 
 Statement::Statement(const Database& database, const std::string& sql) : database_(database) {
+  database.renewSteps();
   sqlite3_stmt* raw = nullptr;
   if (sqlite3_prepare_v2(database.handle(), sql.c_str(), -1, &raw, nullptr) != SQLITE_OK) database.fail();
   handle_.reset(raw);
@@ -110,6 +118,7 @@ bool Statement::step() {
 }
 
 void Statement::reset() {
+  database_.renewSteps();
   sqlite3_reset(handle_.get());
 }
 

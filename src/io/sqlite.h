@@ -15,10 +15,16 @@ namespace gaussmap {
 
 /// A thin owner of SQLite handles: every error becomes a FileError with the path of the database.
 /// A file is read as if nobody wrote to it (it is only ever replaced as a whole): without locks, without regard for
-/// journals beside it, and with no more steps and no longer values than its size warrants, whatever its pages say.
+/// journals beside it, and with no more steps a statement and no longer values than its size warrants, whatever its
+/// pages say.
 class Database {
  public:
-  enum class Mode { ReadOnly, CreateForBulkWrite, InMemory };  // InMemory: the path is a name for messages
+  enum class Mode {
+    ReadOnly,
+    CreateForBulkWrite,
+    ChangeCopy,  ///< of a file that nobody else looks at: without a journal, but distrusted as by ReadOnly
+    InMemory     ///< the path is a name for messages
+  };
   Database(const std::filesystem::path& path, Mode mode);
 
   void execute(const std::string& sql);
@@ -31,11 +37,15 @@ class Database {
   struct Close {
     void operator()(sqlite3* handle) const;
   };
-  void limitReading();
+  friend class Statement;
+  void distrust();
+  /// A statement begins.
+  void renewSteps() const;
 
   std::filesystem::path path_;
   Mode mode_;
   std::unique_ptr<std::int64_t> steps_left_;  // in thousands
+  std::int64_t most_steps_ = 0;
   std::unique_ptr<sqlite3, Close> handle_;
 };
 

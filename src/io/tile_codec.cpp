@@ -5,86 +5,20 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <memory>
 #include <numeric>
 #include <stdexcept>
 
+#include "io/columns.h"
+#include "io/finished_columns.h"
+
 namespace gaussmap {
 namespace {
 
-constexpr std::uint64_t kMostExpansion = 64;  // of a tile by decompression; real ones grow two or three times
-constexpr std::uint64_t kHasMoments = 1, kHasLabels = 2, kHasLogOdds = 4;
-
-std::uint64_t bitsOf(double value) {
-  std::uint64_t bits = 0;
-  std::memcpy(&bits, &value, sizeof bits);
-  return bits;
-}
-
-std::uint64_t bitsOf(float value) {
-  std::uint32_t bits = 0;
-  std::memcpy(&bits, &value, sizeof bits);
-  return bits;
-}
-
-float floatFromBits(std::uint64_t bits) {
-  const auto low = static_cast<std::uint32_t>(bits);
-  float value = 0.0f;
-  std::memcpy(&value, &low, sizeof value);
-  return value;
-}
-
-double fromBits(std::uint64_t bits) {
-  double value = 0.0;
-  std::memcpy(&value, &bits, sizeof value);
-  return value;
-}
-
-/// A column: first the lowest byte of all its numbers, then the next. Neighbours in a map differ in the low bytes only.
-class ColumnWriter {
- public:
-  explicit ColumnWriter(std::string& bytes) : bytes_(bytes) {}
-  template <typename ValueAt>
-  void write(std::size_t count, int width, const ValueAt& value) {
-    const std::size_t begin = bytes_.size();
-    bytes_.resize(begin + count * static_cast<std::size_t>(width));
-    char* out = bytes_.data() + begin;
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::uint64_t bits = value(i);
-      for (int byte = 0; byte < width; ++byte)
-        out[static_cast<std::size_t>(byte) * count + i] = static_cast<char>(bits >> (8 * byte));
-    }
-  }
-
- private:
-  std::string& bytes_;
-};
-
-class ColumnReader {
- public:
-  ColumnReader(const char* bytes, std::size_t size) : next_(bytes), left_(size) {}
-  template <typename Take>
-  void read(std::size_t count, int width, const Take& take) {
-    const std::size_t size = count * static_cast<std::size_t>(width);
-    if (size > left_) throw std::runtime_error("shorter than its cells need");
-    for (std::size_t i = 0; i < count; ++i) {
-      std::uint64_t bits = 0;
-      for (int byte = 0; byte < width; ++byte)
-        bits |= std::uint64_t{static_cast<unsigned char>(next_[static_cast<std::size_t>(byte) * count + i])}
-                << (8 * byte);
-      take(i, bits);
-    }
-    next_ += size;
-    left_ -= size;
-  }
-  std::size_t left() const { return left_; }
-
- private:
-  const char* next_;
-  std::size_t left_;
-};
+constexpr std::uint64_t kMostExpansion = 64;          // of a tile by decompression; real ones grow two or three times
+constexpr std::uint64_t kMostExpansionFinished = 16;  // numbers that are packed already
+constexpr std::uint64_t kHasMoments = 1, kHasLabels = 2, kHasLogOdds = 4, kFinished = 8;
 
 /// The numbers in front of the columns, 8 bytes each.
 template <int D>
@@ -138,9 +72,9 @@ void forTriangle(const Body& body) {
 
 /// Data as regular as a lattice of points are packed so tightly that decompress() would take them for a bomb: a
 /// skippable frame makes up for it.
-void fillUp(std::string& packed, std::size_t raw_size) {
+void fillUp(std::string& packed, std::size_t raw_size, std::uint64_t most_expansion) {
   constexpr std::uint32_t kSkippable = 0x184D2A50;
-  const std::size_t least = raw_size / kMostExpansion + 1;
+  const std::size_t least = raw_size / most_expansion + 1;
   if (packed.size() >= least) return;
   ColumnWriter frame(packed);
   const std::size_t fill = least - packed.size();
@@ -149,7 +83,7 @@ void fillUp(std::string& packed, std::size_t raw_size) {
   packed.append(fill, '\0');
 }
 
-std::string compress(const std::string& raw, int level) {
+std::string compress(const std::string& raw, int level, std::uint64_t most_expansion) {
   const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context(ZSTD_createCCtx(), ZSTD_freeCCtx);
   if (!context) throw std::bad_alloc();
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, level);
@@ -158,7 +92,7 @@ std::string compress(const std::string& raw, int level) {
   const std::size_t size = ZSTD_compress2(context.get(), packed.data(), packed.size(), raw.data(), raw.size());
   if (ZSTD_isError(size)) throw std::runtime_error(std::string("cannot be compressed: ") + ZSTD_getErrorName(size));
   packed.resize(size);
-  fillUp(packed, raw.size());
+  fillUp(packed, raw.size(), most_expansion);
   return packed;
 }
 
@@ -176,15 +110,22 @@ std::string decompress(std::string_view packed) {
 }  // namespace
 
 template <int D>
-std::string encodeTile(const Tile<D>& tile, const TileAddress<D>& address, const MapOptions& options, int level) {
-  const std::size_t cells = tile.keys.size();
-  const std::size_t gaussians = tile.moments.empty() ? tile.gaussians.size() : cells;
-  const std::uint64_t flags = (tile.moments.empty() ? 0 : kHasMoments) | (tile.labels.empty() ? 0 : kHasLabels) |
-                              (tile.log_odds.empty() ? 0 : kHasLogOdds);
+std::string encodeTile(const Tile<D>& tile, const TileAddress<D>& address, const MapOptions& options, int level,
+                       Precision precision) {
+  const std::size_t cells = tile.keys.size(), gaussians = tile.gaussianCount();
+  const bool finished = precision == Precision::Finished;
+  const std::uint64_t flags = (finished               ? kFinished
+                               : tile.moments.empty() ? 0
+                                                      : kHasMoments) |
+                              (tile.labels.empty() ? 0 : kHasLabels) | (tile.log_odds.empty() ? 0 : kHasLogOdds);
   std::string raw;
   ColumnWriter columns(raw);
   for (std::uint64_t number : headerOf<D>(address, options, cells, gaussians, flags))
     columns.write(1, 8, [&](std::size_t) { return number; });
+  if (finished) {
+    writeFinished<D>(raw, tile, address, options);
+    return compress(raw, level, kMostExpansionFinished);
+  }
   for (std::size_t axis = 0; axis < D; ++axis)
     columns.write(cells, 4,
                   [&](std::size_t i) { return std::uint64_t(tile.keys[i][axis] - tileOrigin<D>(address, axis)); });
@@ -207,7 +148,7 @@ std::string encodeTile(const Tile<D>& tile, const TileAddress<D>& address, const
   }
   if (flags & kHasLabels) columns.write(gaussians, 4, [&](std::size_t i) { return std::uint64_t{tile.labels[i]}; });
   if (flags & kHasLogOdds) columns.write(gaussians, 4, [&](std::size_t i) { return bitsOf(tile.log_odds[i]); });
-  return compress(raw, level);
+  return compress(raw, level, kMostExpansion);
 }
 
 template <int D>
@@ -222,8 +163,21 @@ Tile<D> decodeTile(std::string_view bytes, const TileAddress<D>& address, const 
   const bool has_moments = flags & kHasMoments, has_labels = flags & kHasLabels, has_log_odds = flags & kHasLogOdds;
   constexpr std::uint64_t kNumbers = 1 + D + D * (D + 1) / 2;
   constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
-  if ((flags & ~(kHasMoments | kHasLabels | kHasLogOdds)) != 0)
+  if ((flags & ~(kHasMoments | kHasLabels | kHasLogOdds | kFinished)) != 0)
     throw std::runtime_error("holds what this version does not know");
+  if ((flags & kFinished) != 0) {
+    if (has_moments || cells == 0 || gaussians > kMost || raw.size() > kMostExpansionFinished * bytes.size())
+      throw std::runtime_error("its size does not fit its cells");
+    const std::size_t begin = raw.size() - columns.left();
+    try {
+      const Tile<D> tile = readFinished<D>(raw.data() + begin, columns.left(),
+                                           {cells, gaussians, has_labels, has_log_odds}, address, options);
+      for (const Gaussian<D>& gaussian : tile.gaussians) checkPositiveDefinite<D>(gaussian.cov);
+      return tile;
+    } catch (const std::domain_error& error) {
+      throw std::runtime_error(error.what());
+    }
+  }
   if (cells == 0 || cells > kMost || gaussians < cells || gaussians > kMost || (has_moments && gaussians != cells) ||
       columns.left() !=
           cells * 4 * (D + 1) + gaussians * (8 * kNumbers + (has_labels ? 4 : 0) + (has_log_odds ? 4 : 0)))
@@ -290,8 +244,8 @@ Tile<D> decodeTile(std::string_view bytes, const TileAddress<D>& address, const 
   return tile;
 }
 
-#define GAUSSMAP_INSTANTIATE(D)                                                                      \
-  template std::string encodeTile<D>(const Tile<D>&, const TileAddress<D>&, const MapOptions&, int); \
+#define GAUSSMAP_INSTANTIATE(D)                                                                                 \
+  template std::string encodeTile<D>(const Tile<D>&, const TileAddress<D>&, const MapOptions&, int, Precision); \
   template Tile<D> decodeTile<D>(std::string_view, const TileAddress<D>&, const MapOptions&);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)

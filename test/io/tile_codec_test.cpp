@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 #include <zstd.h>
 
+#include <Eigen/Cholesky>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
+
+#include "gaussmap/gaussian/random.h"
 
 namespace gaussmap {
 namespace {
@@ -131,7 +134,7 @@ TEST(TileCodec, RefusesFalseCounts) {
   expectRefused(withNumber(raw, 8, 3), why);  // moments and labels
   expectRefused(withNumber(raw, 8, 0), why);
   expectRefused(withNumber(raw, 8, 6), why);  // labels and occupancies
-  expectRefused(withNumber(raw, 8, 8), "does not know");
+  expectRefused(withNumber(raw, 8, 16), "does not know");
   expectRefused(pack(raw + "x"), why);
   expectRefused(pack(raw.substr(0, raw.size() - 1)), why);
   expectRefused(pack(raw.substr(0, 50)), "shorter");
@@ -192,6 +195,51 @@ TEST(TileCodec, RefusesMomentsThatNoPointsHave) {
   expectRefused(spoilt([](CellMoments<3>& m) { m.sum[0] = std::numeric_limits<std::int64_t>::min(); }), "outside");
   expectRefused(spoilt([](CellMoments<3>& m) { m.product[5] = std::int64_t{1} << 40; }), "outside");
   expectRefused(spoilt([](CellMoments<3>& m) { m.product[0] = 0; }), "not positive definite");
+}
+
+/// A finished tile, its columns, and what comes of changing them.
+TEST(TileCodec, GivesBackOrRefusesFinishedTiles) {
+  Tile<3> tile = gaussianTile();
+  tile.log_odds = {-2.5f, 10.0f, 0.0f};
+  const std::string bytes = encodeTile<3>(tile, kAddress, kOptions, 3, Precision::Finished);
+  const Tile<3> got = decodeTile<3>(bytes, kAddress, kOptions);
+  EXPECT_EQ(got.keys, tile.keys);
+  EXPECT_EQ(got.counts, tile.counts);
+  EXPECT_EQ(got.labels, tile.labels);
+  EXPECT_EQ(got.log_odds, tile.log_odds);  // multiples of 1 / 16
+  EXPECT_TRUE(got.gaussians[1].mean.isApprox(tile.gaussians[1].mean, 0.05));
+  EXPECT_EQ(decodeTile<3>(encodeTile<3>(momentTile(), kAddress, kOptions, 3, Precision::Finished), kAddress, kOptions)
+                .moments.size(),
+            0u);
+  const std::string raw = unpack(bytes);
+  for (const std::uint64_t number :
+       {std::uint64_t{0}, std::uint64_t{1}, std::uint64_t{4000000000}, std::numeric_limits<std::uint64_t>::max()})
+    for (const std::size_t slot : {6, 7})
+      EXPECT_THROW(decodeTile<3>(withNumber(raw, slot, number), kAddress, kOptions), std::runtime_error);
+  for (const std::uint64_t flags : {8, 9, 10, 12, 15, 24})  // 14 is right
+    EXPECT_THROW(decodeTile<3>(withNumber(raw, 8, flags), kAddress, kOptions), std::runtime_error);
+  expectRefused(pack(raw + "x"), "its size does not fit");
+  expectRefused(pack(raw.substr(0, raw.size() - 1)), "shorter");
+  Random random(3);
+  for (int round = 0; round < 20000; ++round) {  // whatever comes, it is a Gaussian
+    std::string changed = raw;
+    for (std::uint64_t change = 1 + random.below(3); change > 0; --change)
+      changed[96 + random.below(raw.size() - 96)] = static_cast<char>(random.below(256));
+    try {
+      for (const Gaussian<3>& gaussian : decodeTile<3>(pack(changed), kAddress, kOptions).gaussians) {
+        EXPECT_TRUE(gaussian.mean.allFinite() && gaussian.weight > 0.0);
+        EXPECT_EQ(Eigen::LLT<Matrix<3>>(gaussian.cov).info(), Eigen::Success);
+      }
+    } catch (const std::runtime_error&) {
+    }
+  }
+}
+
+TEST(TileCodec, RefusesFinishedBombs) {
+  const std::string raw = unpack(encodeTile<3>(gaussianTile(), kAddress, kOptions, 3, Precision::Finished));
+  EXPECT_THROW(decodeTile<3>(withNumber(raw + std::string(10000000, '\0'), 7, 1000000), kAddress, kOptions),
+               std::runtime_error);
+  expectRefused(withNumber(raw + std::string(20 * raw.size(), '\0'), 7, raw.size()), "its size does not fit its cells");
 }
 
 }  // namespace

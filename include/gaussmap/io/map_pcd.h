@@ -41,6 +41,10 @@ GaussianRecords toRecords(const GaussianMap<3>& map, std::optional<int> scale = 
 /// std::invalid_argument, saying what, if they describe no map.
 GaussianMap<3> fromRecords(const GaussianRecords& records);
 
+/// Writes such records, and reads them, as the fields that saveMapPcd() names. Throw FileError.
+void writeRecordsPcd(const GaussianRecords& records, const std::filesystem::path& path);
+GaussianRecords readRecordsPcd(const std::filesystem::path& path);
+
 struct ExportOptions {
   std::optional<int> scale;  ///< one scale only; nothing: all
   bool overwrite = false;

@@ -25,7 +25,7 @@ struct PcdRecords {
 /// Throws FileError, naming the field, if the fields of a file cannot be written again: PCL has no floats of 3 bytes.
 void checkWritable(const PcdReader& reader);
 
-/// Throws FileError as PcdReader::records() and checkWritable().
+/// Throws FileError as PcdReader::records().
 PcdRecords readRecords(const PcdReader& reader);
 
 /// Takes out the points whose flag is not set. In an organised cloud they stay, x, y and z NaN, as PCL's filters do it.
