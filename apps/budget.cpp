@@ -14,39 +14,6 @@ const std::map<std::string, MergeCost> kCosts = {
     {"volume", MergeCost::Volume}, {"runnalls", MergeCost::Runnalls}, {"volume-area", MergeCost::VolumeArea}};
 const std::map<std::string, CellChoice> kCellChoices = {{"error", CellChoice::Error}, {"volume", CellChoice::Volume}};
 
-/// A whole number > 0 with an optional suffix k, M or G (powers of 1000).
-std::uintmax_t amountOf(const std::string& option, std::string_view text, bool suffix) {
-  std::uintmax_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  std::uintmax_t unit = 1;
-  const std::string_view rest(end, static_cast<std::size_t>(text.data() + text.size() - end));
-  if (suffix && rest == "k") unit = 1000;
-  if (suffix && rest == "M") unit = 1000000;
-  if (suffix && rest == "G") unit = 1000000000;
-  if (error != std::errc() || value == 0 || (unit == 1 && !rest.empty()) || value > UINTMAX_MAX / unit)
-    throw UsageError(option + " " + std::string(text) + ": is no whole number above 0" +
-                     (suffix ? ", with k, M or G behind it if you like" : ""));
-  return value * unit;
-}
-
-/// "N" is for every coarse scale, "SCALE=N" for one, and stronger.
-std::map<int, std::size_t> maxGaussians(const std::vector<std::string>& words, int scales) {
-  std::map<int, std::size_t> limits;
-  for (const std::string& word : words)
-    if (word.find('=') == std::string::npos)
-      for (int scale = 1; scale < scales; ++scale) limits[scale] = amountOf("--max-gaussians", word, true);
-  for (const std::string& word : words) {
-    const std::size_t equals = word.find('=');
-    if (equals == std::string::npos) continue;
-    int scale = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + equals, scale);
-    if (error != std::errc() || end != word.data() + equals || scale < 1 || scale >= scales)
-      throw UsageError("--max-gaussians " + word + ": the coarse scales are 1 to " + std::to_string(scales - 1));
-    limits[scale] = amountOf("--max-gaussians", std::string_view(word).substr(equals + 1), true);
-  }
-  return limits;
-}
-
 Json jsonOf(const std::vector<ErrorCurve>& curves) {
   Json all = Json::array();
   for (const ErrorCurve& curve : curves) {
@@ -66,13 +33,60 @@ bool isUnrefined(const GaussianMap<3>& map) {
 
 }  // namespace
 
-void addBudgetOptions(CLI::App& command, BudgetInput& input) {
+std::uintmax_t amountOf(const std::string& option, std::string_view text, bool suffix) {
+  std::uintmax_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  std::uintmax_t unit = 1;
+  const std::string_view rest(end, static_cast<std::size_t>(text.data() + text.size() - end));
+  if (suffix && rest == "k") unit = 1000;
+  if (suffix && rest == "M") unit = 1000000;
+  if (suffix && rest == "G") unit = 1000000000;
+  if (error != std::errc() || value == 0 || (unit == 1 && !rest.empty()) || value > UINTMAX_MAX / unit)
+    throw UsageError(option + " " + std::string(text) + ": is no whole number above 0" +
+                     (suffix ? ", with k, M or G behind it if you like" : ""));
+  return value * unit;
+}
+
+std::map<int, std::size_t> maxGaussians(const BudgetInput& input, const GaussianMap<3>& map, int first_scale) {
+  const std::vector<std::string>& words = input.max_gaussians;
+  const int scales = map.scales();
+  std::map<int, std::size_t> limits;
+  for (const std::string& word : words)
+    if (word.find('=') == std::string::npos)
+      for (int scale = std::max(first_scale, std::min(1, scales - 1)); scale < scales; ++scale)
+        limits[scale] = amountOf("--max-gaussians", word, true);
+  for (const std::string& word : words) {
+    const std::size_t equals = word.find('=');
+    if (equals == std::string::npos) continue;
+    int scale = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + equals, scale);
+    if (error != std::errc() || end != word.data() + equals || scale < first_scale || scale >= scales)
+      throw UsageError("--max-gaussians " + word + ": the scales are " + std::to_string(first_scale) + " to " +
+                       std::to_string(scales - 1));
+    limits[scale] = amountOf("--max-gaussians", std::string_view(word).substr(equals + 1), true);
+  }
+  for (const auto& [scale, most] : limits)
+    if (most < map.cellCount(scale))
+      throw UsageError("--max-gaussians " + std::to_string(most) + ": scale " + std::to_string(scale) + " has " +
+                       std::to_string(map.cellCount(scale)) +
+                       " occupied cells, which hold at least one each; take more, or coarser cells");
+  return limits;
+}
+
+std::uintmax_t maxBytes(const BudgetInput& input) {
+  return amountOf("--max-bytes", input.max_bytes, true);
+}
+
+MergeCost mergeCost(const BudgetInput& input) {
+  return input.cost ? kCosts.at(*input.cost) : MergeCost::Volume;
+}
+
+void addLimitOptions(CLI::App& command, BudgetInput& input) {
   CLI::Option* budget =
       command
           .add_option("--budget", input.budget,
                       "Gaussians per coarse scale, as a multiple of its occupied cells; 1: one a cell")
-          ->check(numberBetween(1.0, 1e6))
-          ->capture_default_str();
+          ->check(numberBetween(1.0, 1e6));
   CLI::Option* gaussians =
       command.add_option("--max-gaussians", input.max_gaussians,
                          "most Gaussians of each coarse scale: N, or SCALE=N for one (repeatable)");
@@ -86,16 +100,26 @@ void addBudgetOptions(CLI::App& command, BudgetInput& input) {
   for (CLI::Option* one : {budget, gaussians, bytes, error})
     for (CLI::Option* other : {budget, gaussians, bytes, error})
       if (one != other) one->excludes(other);
+}
+
+void addCostOption(CLI::App& command, BudgetInput& input) {
+  command
+      .add_option(
+          "--cost", input.cost,
+          "what clusters are merged by (agglomeration): growth of the ellipsoids' volume (default); runnalls: loss of "
+          "likelihood; volume-area: large surfaces resist longer")
+      ->check(CLI::IsMember(kCosts));
+}
+
+void addBudgetOptions(CLI::App& command, BudgetInput& input) {
+  addLimitOptions(command, input);
+  command.get_option("--budget")->capture_default_str();
   command
       .add_option("--method", input.method,
                   "agglomerate: from all finer Gaussians down; insert: the paper's, one cluster after the other")
       ->check(CLI::IsMember(kMethods))
       ->capture_default_str();
-  command
-      .add_option("--cost", input.cost,
-                  "what --method agglomerate merges by: growth of the ellipsoids' volume (default); runnalls: loss of "
-                  "likelihood; volume-area: large surfaces resist longer")
-      ->check(CLI::IsMember(kCosts));
+  addCostOption(command, input);
   command
       .add_option("--cells", input.cells,
                   "which cells --method insert gives the next cluster to: of largest error (default, the paper's), or "
@@ -106,7 +130,7 @@ void addBudgetOptions(CLI::App& command, BudgetInput& input) {
 }
 
 void checkBudget(const BudgetInput& input) {
-  if (!input.max_bytes.empty()) amountOf("--max-bytes", input.max_bytes, true);
+  if (!input.max_bytes.empty()) maxBytes(input);
   if (input.method == "insert" && (!input.max_bytes.empty() || input.max_error > 0.0))
     throw UsageError("--method insert: knows --budget and --max-gaussians only");
   if (input.method == "insert" && input.cost) throw UsageError("--cost: for --method agglomerate only");
@@ -117,14 +141,9 @@ GaussianMap<3> refineWithin(GaussianMap<3> map, const BudgetInput& input, MapMet
   RefineOptions options = input.refine;
   options.budget = input.budget;
   options.method = kMethods.at(input.method);
-  if (input.cost) options.merge_cost = kCosts.at(*input.cost);
+  options.merge_cost = mergeCost(input);
   if (input.cells) options.cell_choice = kCellChoices.at(*input.cells);
-  options.max_gaussians = maxGaussians(input.max_gaussians, map.scales());
-  for (const auto& [scale, most] : options.max_gaussians)
-    if (most < map.cellCount(scale))
-      throw UsageError("--max-gaussians " + std::to_string(most) + ": scale " + std::to_string(scale) + " has " +
-                       std::to_string(map.cellCount(scale)) +
-                       " occupied cells, which hold at least one each; take more, or coarser cells");
+  options.max_gaussians = maxGaussians(input, map, 1);
   step["method"] = input.method;
   if (input.cost) step["cost"] = *input.cost;
   if (input.cells) step["cells"] = *input.cells;
@@ -134,7 +153,7 @@ GaussianMap<3> refineWithin(GaussianMap<3> map, const BudgetInput& input, MapMet
   metadata.erase("error_curves");  // of the map as it was
 
   if (!input.max_bytes.empty()) {
-    const std::uintmax_t most = amountOf("--max-bytes", input.max_bytes, true);
+    const std::uintmax_t most = maxBytes(input);
     step["max_bytes"] = most;
     addHistory(metadata, step);
     const SaveOptions saving{false, SaveOptions().compression, options.threads};
@@ -167,7 +186,8 @@ GaussianMap<3> refineWithin(GaussianMap<3> map, const BudgetInput& input, MapMet
   addHistory(metadata, step);
   const bool one_per_cell = options.max_gaussians.empty() && options.budget == 1.0;
   if (one_per_cell && isUnrefined(map)) return map;
-  if (one_per_cell || options.method == RefineMethod::Insert) return refine<3>(std::move(map), options);
+  if (one_per_cell || !input.curves || options.method == RefineMethod::Insert)
+    return refine<3>(std::move(map), options);
   RefinedMap refined = refineWithCurves(std::move(map), options);
   keepCurves(metadata, refined.curves);
   return std::move(refined.map);

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common.h"
@@ -20,11 +21,26 @@ struct BudgetInput {
   std::optional<std::string> cost;   // of merges, --method agglomerate only
   std::optional<std::string> cells;  // which cells are served first, --method insert only
   RefineOptions refine;              // seed and threads
+  bool curves = true;                // measure what other budgets would give
 };
 void addBudgetOptions(CLI::App& command, BudgetInput& input);
+/// Two parts of these, for commands that merge clusters only: the budgets without a default, and --cost.
+void addLimitOptions(CLI::App& command, BudgetInput& input);
+void addCostOption(CLI::App& command, BudgetInput& input);
+
+/// A whole number > 0, with an optional suffix k, M or G (powers of 1000) behind it. Throws UsageError, naming the
+/// option.
+std::uintmax_t amountOf(const std::string& option, std::string_view text, bool suffix);
 
 /// Checks the words that need no map. Throws UsageError.
 void checkBudget(const BudgetInput& input);
+
+/// --max-gaussians by scale: "N" is for every coarse scale (of a map of one scale: that), "SCALE=N" for one, and
+/// stronger. Throws UsageError for scales below `first_scale`, and for fewer than a scale has cells.
+std::map<int, std::size_t> maxGaussians(const BudgetInput& input, const GaussianMap<3>& map, int first_scale);
+/// --max-bytes, which is given. Throws UsageError.
+std::uintmax_t maxBytes(const BudgetInput& input);
+MergeCost mergeCost(const BudgetInput& input);
 
 /// The map within its budget. Adds the error curves to the metadata, and `step`, completed by the budget, to the
 /// history; warns on stderr of scales that cannot reach --max-error.

@@ -35,11 +35,11 @@ void addScanOptions(CLI::App& command, ScanInput& input) {
       ->capture_default_str();
 }
 
-namespace {
-
 void warn(const std::string& text) {
   std::cerr << "gaussmap: warning: " << text << '\n';
 }
+
+namespace {
 
 /// A directory and a file in it, say.
 void warnOfScansGivenTwice(const std::vector<std::filesystem::path>& paths) {

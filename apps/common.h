@@ -27,6 +27,14 @@ struct UsageError : std::runtime_error {
 void addPcd2map(CLI::App& app);
 void addRefine(CLI::App& app);
 void addCompress(CLI::App& app);
+void addRegister(CLI::App& app);
+void addFinish(CLI::App& app);
+void addTiles(CLI::App& app);
+void addSimplify(CLI::App& app);
+void addMerge(CLI::App& app);
+void addTransform(CLI::App& app);
+void addCrop(CLI::App& app);
+void addDiff(CLI::App& app);
 void addClean(CLI::App& app);
 void addRestore(CLI::App& app);
 void addInfo(CLI::App& app);
@@ -34,6 +42,10 @@ void addExport(CLI::App& app);
 void addHausdorff(CLI::App& app);
 void addSimulate(CLI::App& app);
 void addDraw(CLI::App& app);
+void addSegments(CLI::App& app);
+
+/// One line on stderr.
+void warn(const std::string& text);
 
 /// Which clouds, and how they lie in the map: the same words for every command that reads scans.
 struct ScanInput {

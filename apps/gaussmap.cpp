@@ -40,6 +40,14 @@ int main(int argc, char** argv) {
   addPcd2map(app);
   addRefine(app);
   addCompress(app);
+  addRegister(app);
+  addFinish(app);
+  addTiles(app);
+  addSimplify(app);
+  addMerge(app);
+  addTransform(app);
+  addCrop(app);
+  addDiff(app);
   addClean(app);
   addRestore(app);
   addInfo(app);
@@ -47,6 +55,7 @@ int main(int argc, char** argv) {
   addHausdorff(app);
   addSimulate(app);
   addDraw(app);
+  addSegments(app);
   try {
     app.parse(argc, argv);
     std::cout.flush();

@@ -33,7 +33,9 @@ std::string sentenceOf(const Json& step) {
 }
 
 /// Whether more scans can be added, and why not.
-std::string stateOf(const GaussianMap<3>& map) {
+std::string stateOf(const GaussianMap<3>& map, const MapMetadata& metadata) {
+  const auto final_error = metadata.find(kFinalEntry);
+  if (final_error != metadata.end()) return "final (takes no more scans): " + final_error->second;
   if (map.isCompressed()) return "compressed: detail only where it is needed (takes no more scans)";
   const std::string occupancy = map.hasOccupancy() ? ", with occupancy" : "";
   return (map.canGrow() ? "exact moments at the finest scale (takes more scans)" : "Gaussians only (final)") +
@@ -100,6 +102,7 @@ void printInfo(const InfoOptions& options) {
                  {"noise", map.options().noise},
                  {"finest", map.canGrow() || !map.scale(0).moments.empty() ? "moments" : "gaussians"},
                  {"takes_scans", map.canGrow()},
+                 {"final", metadata.count(kFinalEntry) > 0},
                  {"compressed", map.isCompressed()},
                  {"occupancy", map.hasOccupancy()},
                  {"scales", scales},
@@ -113,7 +116,7 @@ void printInfo(const InfoOptions& options) {
     printJson(info);
     return;
   }
-  std::printf("%s: %s, %s\n", options.map.c_str(), humanBytes(size.file).c_str(), stateOf(map).c_str());
+  std::printf("%s: %s, %s\n", options.map.c_str(), humanBytes(size.file).c_str(), stateOf(map, metadata).c_str());
   std::printf("ratio %d, noise floor %g m", map.options().ratio, map.options().noise);
   if (extent)
     std::printf(", extent [%.2f %.2f %.2f] .. [%.2f %.2f %.2f] m", extent->low.x(), extent->low.y(), extent->low.z(),

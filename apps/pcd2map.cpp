@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap pcd2map IN... -o OUT.gmap: scans in, map file out.
+// gaussmap pcd2map IN... -o OUT.gmap: scans in, map file out; or --update MAP: scans into it.
 #include <cmath>
 #include <iostream>
 
 #include "budget.h"
 #include "common.h"
+#include "gaussmap/io/build_map_file.h"
 #include "gaussmap/io/scan_list.h"
 #include "gaussmap/mapping/build.h"
 #include "online.h"
+#include "scan_report.h"
+#include "update.h"
 
 namespace gaussmap::app {
 namespace {
@@ -18,6 +21,8 @@ struct Pcd2mapOptions {
   MapOptions map;
   BudgetInput budget;
   OnlineInput online;
+  UpdateInput update;
+  std::string max_memory;  // "": no limit
   bool json = false;
 };
 
@@ -26,24 +31,11 @@ struct Built {
   PointCounts counts;
 };
 
-void requirePoints(const PointCounts& counts, const std::vector<ScanSource>& scans) {
-  if (counts.accepted > 0) return;
-  throw std::runtime_error(nameOf(scans) + ": of " + std::to_string(counts.read) + " points none is usable: " +
-                           std::to_string(counts.non_finite) + " are not finite, " + std::to_string(counts.at_sensor) +
-                           " at range 0, " + std::to_string(counts.beyond_range) + " beyond --max-range");
-}
-
-Json jsonOf(const PointCounts& counts) {
-  return {{"read", counts.read},
-          {"accepted", counts.accepted},
-          {"non_finite", counts.non_finite},
-          {"at_sensor", counts.at_sensor},
-          {"beyond_range", counts.beyond_range}};
-}
-
-Json historyOf(const std::vector<ScanSource>& scans, const PointCounts& counts) {
-  return {{"command", "pcd2map"}, {"version", GAUSSMAP_VERSION}, {"scans", scans.size()}, {"points", jsonOf(counts)}};
-}
+/// What is said of a map that was written.
+struct Written {
+  PointCounts counts;
+  Json scales = Json::array();
+};
 
 Built buildAtOnce(const Pcd2mapOptions& options, const std::vector<ScanSource>& scans, const AccumulateOptions& reading,
                   MapMetadata& metadata) {
@@ -69,7 +61,63 @@ Built buildOnline(const Pcd2mapOptions& options, const std::vector<ScanSource>& 
   return {std::move(result.map), result.counts};
 }
 
+void checkMemory(const Pcd2mapOptions& options) {
+  if (options.max_memory.empty()) return;
+  if (options.online.on || options.budget.method != "agglomerate" || !options.budget.max_gaussians.empty() ||
+      !options.budget.max_bytes.empty() || options.budget.max_error > 0.0)
+    throw UsageError(
+        "--max-memory: goes tile by tile, with --budget alone; --online, --method insert, --max-gaussians, --max-bytes "
+        "and --max-error look at the whole map (gaussmap refine does so afterwards)");
+  if (amountOf("--max-memory", options.max_memory, true) < kLeastBuildMemory)
+    throw UsageError("--max-memory " + options.max_memory + ": at least " + std::to_string(kLeastBuildMemory) +
+                     " bytes are needed");
+}
+
+Written buildWithinMemory(const Pcd2mapOptions& options, const std::vector<ScanSource>& scans,
+                          const AccumulateOptions& reading) {
+  BuildMapFileOptions building;
+  building.max_memory = amountOf("--max-memory", options.max_memory, true);
+  building.refine = options.budget.refine;
+  building.refine.budget = options.budget.budget;
+  building.refine.merge_cost = mergeCost(options.budget);
+  building.save = {options.output.force, SaveOptions().compression, options.budget.refine.threads};
+  ProgressBar bar;
+  const BuiltMapFile built = buildMapFile(
+      scans, reading, options.map, options.output.path,
+      [&](const PointCounts& counts) {
+        requirePoints(counts, scans);
+        MapMetadata metadata;
+        Json step = historyOf(scans, counts);  // as refineWithin() writes it: the file is the same
+        step["method"] = options.budget.method;
+        if (options.budget.cost) step["cost"] = *options.budget.cost;
+        step["budget"] = options.budget.budget;
+        addHistory(metadata, step);
+        return metadata;
+      },
+      building, [&](const AccumulateProgress& progress) { bar.show(progress); });
+  Written written{built.counts, Json::array()};
+  const Grid<3> grid(options.map);
+  for (int s = 0; s < grid.scales(); ++s)
+    written.scales.push_back({{"scale", s},
+                              {"cell_side", grid.side(s)},
+                              {"cells", built.cells[static_cast<std::size_t>(s)]},
+                              {"gaussians", built.gaussians[static_cast<std::size_t>(s)]},
+                              {"weight", static_cast<double>(built.counts.accepted)}});
+  return written;
+}
+
+Written buildInMemory(const Pcd2mapOptions& options, const std::vector<ScanSource>& scans,
+                      const AccumulateOptions& reading) {
+  MapMetadata metadata;
+  const Built built = options.online.on ? buildOnline(options, scans, reading, metadata)
+                                        : buildAtOnce(options, scans, reading, metadata);
+  saveMap<3>(built.map, options.output.path, metadata,
+             {options.output.force, SaveOptions().compression, options.budget.refine.threads});
+  return {built.counts, scalesOf(built.map)};
+}
+
 void pcd2map(const Pcd2mapOptions& options) {
+  if (!options.update.map.empty()) return updateFromScans(options.update, options.input, options.budget, options.json);
   try {
     const Grid<3> grid(options.map);
   } catch (const std::invalid_argument& error) {
@@ -80,37 +128,31 @@ void pcd2map(const Pcd2mapOptions& options) {
   checkMapOutput(options.output, inputs);
   checkBudget(options.budget);
   checkOnline(options.online, options.budget, options.output, inputs);
+  checkMemory(options);
   const double start = now();
-  const int threads = options.budget.refine.threads;
 
   const std::vector<ScanSource> scans = findScans(options.input);
-  MapMetadata metadata;
-  const AccumulateOptions reading = accumulateOptions(options.input, options.map.resolution, threads);
-  const Built built = options.online.on ? buildOnline(options, scans, reading, metadata)
-                                        : buildAtOnce(options, scans, reading, metadata);
-  const GaussianMap<3>& map = built.map;
-  const PointCounts& counts = built.counts;
-  saveMap<3>(map, options.output.path, metadata, {options.output.force, SaveOptions().compression, threads});
+  const AccumulateOptions reading =
+      accumulateOptions(options.input, options.map.resolution, options.budget.refine.threads);
+  const Written written =
+      options.max_memory.empty() ? buildInMemory(options, scans, reading) : buildWithinMemory(options, scans, reading);
 
   const std::uintmax_t bytes = std::filesystem::file_size(options.output.path);
   const double seconds = now() - start;
   if (options.json) {
     printJson({{"map", options.output.path},
                {"scans", scans.size()},
-               {"points", jsonOf(counts)},
-               {"scales", scalesOf(map)},
+               {"points", jsonOf(written.counts)},
+               {"scales", written.scales},
                {"bytes", bytes},
                {"seconds", seconds}});
     return;
   }
-  std::cout << options.output.path << ": " << scans.size() << (scans.size() == 1 ? " scan, " : " scans, ")
-            << counts.accepted << " points";
-  if (counts.accepted < counts.read)
-    std::cout << " (left out: " << counts.non_finite << " not finite, " << counts.at_sensor << " at range 0, "
-              << counts.beyond_range << " too far)";
-  std::cout << ", Gaussians per scale";
-  for (int s = 0; s < map.scales(); ++s) std::cout << (s ? " / " : " ") << map.gaussianCount(s);
-  std::cout << ", " << humanBytes(bytes) << ", " << std::round(seconds * 100.0) / 100.0 << " s\n";
+  std::vector<std::size_t> gaussians;
+  for (const Json& scale : written.scales) gaussians.push_back(scale["gaussians"].get<std::size_t>());
+  std::cout << options.output.path << ": " << summaryOf(scans, written.counts) << ", Gaussians per scale "
+            << perScale(gaussians) << ", " << humanBytes(bytes) << ", " << std::round(seconds * 100.0) / 100.0
+            << " s\n";
 }
 
 }  // namespace
@@ -121,10 +163,18 @@ void addPcd2map(CLI::App& app) {
   command->footer(
       "The pose of each scan is the VIEWPOINT of its file, unless --poses gives others or --frame map says that the\n"
       "points lie in the map frame already.\n"
+      "--update adds scans to a map file and writes only the tiles that change: its finest scale is then that of a "
+      "map\n"
+      "built of all scans at once. Coarse cells with new points are made anew, within the budget of the whole scale:\n"
+      "--budget, else the one that the map was made with, else as many Gaussians a cell as it has. Cells of a map "
+      "with\n"
+      "occupancy keep it, new ones are certain. The old map stays until the new one is complete.\n"
       "Example: gaussmap pcd2map scans/*.pcd -o street.gmap --resolution 0.2 --budget 3");
   command->add_option("scans", options->input.paths, "PCD files, or directories of them (in natural order)")
       ->required();
   addOutput(*command, options->output, "map file to write (.gmap)");
+  CLI::Option* output = command->get_option("--output")->required(false);
+  CLI::Option* update = command->add_option("--update", options->update.map, "map file to add the scans to (.gmap)");
   command->add_option("--resolution", options->map.resolution, "side of the finest cells [m]")->capture_default_str();
   command->add_option("--scales", options->map.scales, "number of scales")->capture_default_str();
   command->add_option("--ratio", options->map.ratio, "how many times wider the cells of the next scale are")
@@ -134,8 +184,20 @@ void addPcd2map(CLI::App& app) {
   addBudgetOptions(*command, options->budget);
   addOnlineOptions(*command, options->online);
   addScanOptions(*command, options->input);
+  command->add_option("--max-memory", options->max_memory,
+                      "build within so much memory (with k, M or G behind it), tile by tile through a file without a "
+                      "name beside the map; the map is the same, without error curves");
+  command->add_flag("!--no-curves", options->budget.curves,
+                    "do not measure what other budgets would give (gaussmap info); takes less time");
   command->add_flag("--json", options->json, "print the result for machines");
-  command->callback([options] { pcd2map(*options); });
+  for (const char* const other : {"--output", "--force", "--resolution", "--scales", "--ratio", "--noise", "--online",
+                                  "--max-gaussians", "--max-bytes", "--max-error", "--method", "--max-memory"})
+    update->excludes(command->get_option(other));
+  command->callback([options, command, output, update] {
+    if (output->count() + update->count() == 0) throw UsageError("--output is required (or --update MAP)");
+    if (command->count("--budget") > 0) options->update.budget = options->budget.budget;
+    pcd2map(*options);
+  });
 }
 
 }  // namespace gaussmap::app

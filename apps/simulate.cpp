@@ -10,12 +10,16 @@
 #include "gaussmap/io/pcd_writer.h"
 #include "gaussmap/io/ply.h"
 #include "gaussmap/io/scan_list.h"
+#include "gaussmap/io/segment_files.h"
 
 namespace gaussmap::app {
 namespace {
 
-const std::map<std::string, WorldName> kWorlds = {
-    {"corner", WorldName::Corner}, {"street", WorldName::Street}, {"hall", WorldName::Hall}, {"plan", WorldName::Plan}};
+const std::map<std::string, WorldName> kWorlds = {{"corner", WorldName::Corner},
+                                                  {"street", WorldName::Street},
+                                                  {"avenue", WorldName::Avenue},
+                                                  {"hall", WorldName::Hall},
+                                                  {"plan", WorldName::Plan}};
 
 struct SimulateCommand {
   std::string scene = "corner";
@@ -80,8 +84,26 @@ void writeScan(const std::filesystem::path& path, const SimulatedScan& scan, boo
   writePcd(path, scan.points.size(), fields, scan.pose);
 }
 
+/// The walls of the plan, linked where one begins at the end of the one before.
+SegmentMap planMap() {
+  SegmentMap map;
+  for (const WallSegment& wall : planWalls()) {
+    const std::size_t i = map.segments.size();
+    Segment segment;
+    segment.start = wall.from;
+    segment.end = wall.to;
+    if (i == 0 || segment.start != map.segments.back().end) map.chains.push_back({i, i, false});
+    map.segments.push_back(segment);
+    SegmentMap::Chain& chain = map.chains.back();
+    chain.last = i + 1;
+    chain.closed = map.segments[chain.first].start == segment.end;
+  }
+  return map;
+}
+
 void run(const SimulateCommand& options) {
-  if (options.world.moving && options.scene != "street") throw UsageError("--moving: only in the scene 'street'");
+  if (options.world.moving && options.scene != "street" && options.scene != "avenue")
+    throw UsageError("--moving: only in the scenes 'street' and 'avenue'");
   Simulation simulation = makeSimulation(kWorlds.at(options.scene), options.world);
   std::visit(
       [&](auto& sensor) {
@@ -95,6 +117,8 @@ void run(const SimulateCommand& options) {
   const std::filesystem::path folder = options.output.path, scans = makeFolder(folder / "scans");
   const std::vector<std::filesystem::path> paths = scanPaths(scans, simulation.trajectory.size());
   std::vector<std::filesystem::path> outputs = {folder / "truth.pcd", folder / "truth.ply", folder / "trajectory.tum"};
+  const bool has_walls = options.scene == "plan";
+  if (has_walls) outputs.push_back(folder / "walls.pcd");
   outputs.insert(outputs.end(), paths.begin(), paths.end());
   for (const std::filesystem::path& path : outputs) checkOutput({path.string(), options.output.force});
   refuseOtherScans(scans, paths);
@@ -111,11 +135,13 @@ void run(const SimulateCommand& options) {
   writePcd(folder / "truth.pcd", truth, PcdPrecision::Double);
   writePly(folder / "truth.ply", simulation.world.mesh());
   writeTum(folder / "trajectory.tum", simulation.trajectory);
+  if (has_walls) writeSegmentPcd(folder / "walls.pcd", planMap());
   std::cout << folder.string() << ": " << options.scene << ", " << paths.size()
             << (paths.size() == 1 ? " scan, " : " scans, ") << points << " points";
   if (options.world.moving) std::cout << " (" << points - truth.size() << " on moving objects)";
   std::cout << "; the truth: truth.ply (" << simulation.world.mesh().triangles.size()
-            << " triangles), truth.pcd (where rays met them), trajectory.tum\n";
+            << " triangles), truth.pcd (where rays met them), trajectory.tum"
+            << (has_walls ? ", walls.pcd (for gaussmap segments --walls)\n" : "\n");
 }
 
 }  // namespace
@@ -124,11 +150,14 @@ void addSimulate(CLI::App& app) {
   auto options = std::make_shared<SimulateCommand>();
   CLI::App* command = app.add_subcommand("simulate", "Scans of a built-in scene, with the exact truth beside them");
   command->footer(
-      "Scenes: corner (floor, two walls, a pole), street (150 m: fronts, trees, poles, parked cars, a fence), hall\n"
-      "(a hall, a corridor, furnished rooms), plan (a floor plan with walls of 12 cm for a planar laser).\n"
+      "Scenes: corner (floor, two walls, a pole), street (150 m: plane fronts, trees, poles, parked cars, a fence),\n"
+      "avenue (the same with fronts in relief and many trees), hall (a hall, a corridor, furnished rooms), plan (a\n"
+      "floor plan with walls of 12 cm for a planar laser).\n"
       "Writes DIR/scans/scan00.pcd ... (sensor frame, pose in VIEWPOINT; with --moving a field label: 1 = on a moving\n"
       "object) and, in the map frame, DIR/truth.ply (all that stands still; the rays are cast against these very\n"
-      "triangles), DIR/truth.pcd (where they met them, without noise) and DIR/trajectory.tum.\n"
+      "triangles), DIR/truth.pcd (where they met them, without noise) and DIR/trajectory.tum; plan also "
+      "DIR/walls.pcd,\n"
+      "its walls as a map of segments.\n"
       "Example: gaussmap simulate street -o street --moving && gaussmap pcd2map street/scans -o street.gmap");
   command->add_option("scene", options->scene, "what to scan")->check(CLI::IsMember(kWorlds))->capture_default_str();
   addOutput(*command, options->output, "directory to write to");

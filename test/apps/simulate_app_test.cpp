@@ -56,7 +56,7 @@ class SimulateApp : public AppTest {
 };
 
 TEST_F(SimulateApp, WritesScansOfEverySceneThatLieOnItsMesh) {
-  for (const std::string scene : {"corner", "street", "hall"}) {
+  for (const std::string scene : {"corner", "street", "avenue", "hall"}) {
     SCOPED_TRACE(scene);
     const std::string text =
         simulate(scene, {scene, "--scans", "3", "--rings", "8", "--columns", "40", "--noise", "0"});

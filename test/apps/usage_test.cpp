@@ -9,7 +9,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> kCommands = {"pcd2map", "refine", "info", "export", "hausdorff", "simulate", "draw"};
+const std::vector<std::string> kCommands = {"pcd2map",   "refine",   "info", "export",
+                                            "hausdorff", "simulate", "draw", "segments"};
 
 TEST_F(Apps, ExplainThemselvesWithAnExample) {
   for (const std::string& command : kCommands) {

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// gaussmap register: where scans were taken, in the frame of a map.
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "common.h"
+#include "gaussmap/io/map_pcd.h"
+#include "gaussmap/io/pcd_reader.h"
+#include "gaussmap/io/scan_list.h"
+#include "gaussmap/mapping/scan.h"
+#include "gaussmap/registration/registration.h"
+#include "gaussmap/simulation/trajectory.h"
+
+namespace gaussmap::app {
+namespace {
+
+struct RegisterCommand {
+  std::vector<std::string> inputs;  // scans, and the map as the last
+  std::vector<double> guess;        // x y z qx qy qz qw; empty: the VIEWPOINT of the first scan
+  std::string tum;
+  bool force = false;
+  RegistrationOptions options;
+  bool json = false;
+};
+
+Pose guessOf(const RegisterCommand& command, const std::filesystem::path& first) {
+  Pose guess;
+  if (command.guess.empty()) {
+    guess = PcdReader(first).header().viewpoint;
+    if (const std::string fault = poseFault(guess); !fault.empty())
+      throw FileError(first, "its VIEWPOINT is no first guess: " + fault + "; give --guess");
+    return normalised(guess);
+  }
+  const std::vector<double>& g = command.guess;
+  guess = {{g[0], g[1], g[2]}, Pose::Rotation(g[6], g[3], g[4], g[5])};
+  if (const std::string fault = poseFault(guess); !fault.empty()) throw UsageError("--guess: " + fault);
+  return normalised(guess);
+}
+
+Json jsonOf(const std::filesystem::path& scan, const RegistrationResult& result) {
+  const auto& t = result.pose.translation;
+  const auto& q = result.pose.rotation;
+  Json covariance = Json::array();
+  for (Eigen::Index row = 0; row < 6; ++row)
+    for (Eigen::Index column = 0; column < 6; ++column) covariance.push_back(result.covariance(row, column));
+  return {{"scan", scan.string()},
+          {"translation", {t.x(), t.y(), t.z()}},
+          {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}},
+          {"covariance", covariance},
+          {"fitness", result.fitness},
+          {"mean_squared_mahalanobis", result.mean_squared},
+          {"converged", result.converged},
+          {"degenerate", result.degenerate},
+          {"iterations", result.iterations}};
+}
+
+void print(const std::filesystem::path& scan, const RegistrationResult& result) {
+  const auto& t = result.pose.translation;
+  const auto& q = result.pose.rotation;
+  const auto deviation = [&](int axis) { return std::sqrt(result.covariance(axis, axis)); };
+  const double degrees = 180.0 / std::acos(-1.0);
+  std::printf("%s: %.4f %.4f %.4f  %.6f %.6f %.6f %.6f  +- %.4f %.4f %.4f m, %.3f %.3f %.3f deg, fitness %.3f%s%s\n",
+              scan.filename().string().c_str(), t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w(), deviation(0),
+              deviation(1), deviation(2), degrees * deviation(3), degrees * deviation(4), degrees * deviation(5),
+              result.fitness, result.converged ? "" : ", not converged", result.degenerate ? ", degenerate" : "");
+}
+
+void run(const RegisterCommand& command) {
+  const std::filesystem::path map_path = command.inputs.back();
+  const std::vector<std::filesystem::path> scans = listScans({command.inputs.begin(), std::prev(command.inputs.end())});
+  if (!command.tum.empty()) {
+    std::vector<std::filesystem::path> inputs = scans;
+    inputs.push_back(map_path);
+    checkOutput({command.tum, command.force}, inputs);
+  }
+  Pose guess = guessOf(command, scans.front());
+  const GaussianMap<3> map = loadAnyMap(map_path);
+  if (map.empty()) throw FileError(map_path, "is an empty map: there is nothing to register with");
+
+  Json all = Json::array();
+  std::vector<TimedPose> trajectory;
+  for (const std::filesystem::path& path : scans) {
+    const RegistrationResult result = registerScan(loadScan({path, Pose()}).points, map, guess, command.options);
+    if (result.fitness == 0.0)
+      throw FileError(path, "meets nothing of the map from where it is looked for: give a nearer --guess");
+    guess = result.pose;  // of the next scan
+    trajectory.push_back({double(trajectory.size()), result.pose});
+    if (command.json)
+      all.push_back(jsonOf(path, result));
+    else
+      print(path, result);
+  }
+  if (!command.tum.empty()) writeTum(command.tum, trajectory);
+  if (command.json) printJson(all);
+}
+
+}  // namespace
+
+void addRegister(CLI::App& app) {
+  auto command = std::make_shared<RegisterCommand>();
+  CLI::App* const sub = app.add_subcommand("register", "Where scans were taken, in the frame of a map");
+  sub->footer(
+      "Prints x y z qx qy qz qw of every scan, standard deviations, and the share of the scan that lies on the map.\n"
+      "The first is looked for at --guess or the VIEWPOINT of its file, each other one where the one before was "
+      "found.\n"
+      "'degenerate' says that the scan does not tell some direction, as in a corridor.\n"
+      "Example: gaussmap register scans/ street.gmap --tum poses.tum");
+  sub->add_option("inputs", command->inputs, "scans (.pcd files or directories of them), then the map")
+      ->required()
+      ->expected(2, -1);
+  sub->add_option("--guess", command->guess, "where the first scan is looked for: x y z qx qy qz qw")
+      ->expected(7)
+      ->check(numberBetween(-1e12, 1e12));
+  sub->add_option("--tum", command->tum, "write the poses, one line a scan: number x y z qx qy qz qw");
+  sub->add_flag("--force", command->force, "replace the file of poses if it is there");
+  sub->add_option("--scan-resolution", command->options.resolution, "cells of the scan [m], 0 = twice the map's finest")
+      ->check(numberBetween(0.0, 1e6))
+      ->capture_default_str();
+  sub->add_option("--kernel", command->options.kernel, "standard deviations at which a residual counts half")
+      ->check(numberBetween(1e-3, 1e6))
+      ->capture_default_str();
+  addThreads(*sub, command->options.threads);
+  sub->add_flag("--json", command->json, "print the poses for machines, with their 6 x 6 covariances");
+  sub->callback([command] { run(*command); });
+}
+
+}  // namespace gaussmap::app

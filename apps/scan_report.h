@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common.h"
+#include "gaussmap/mapping/accumulate_scans.h"
+
+namespace gaussmap::app {
+
+/// Throws unless some point was usable, and says what became of them.
+void requirePoints(const PointCounts& counts, const std::vector<ScanSource>& scans);
+
+Json jsonOf(const PointCounts& counts);
+
+/// The step of the history that scans make.
+Json historyOf(const std::vector<ScanSource>& scans, const PointCounts& counts);
+
+/// "20 scans, 2203027 points (left out: ...)".
+std::string summaryOf(const std::vector<ScanSource>& scans, const PointCounts& counts);
+
+/// "526732 / 11327 / 129", finest first.
+std::string perScale(const std::vector<std::size_t>& counts);
+
+}  // namespace gaussmap::app

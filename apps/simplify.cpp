@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// gaussmap simplify MAP -o OUT: fewer Gaussians, from those that there are.
+#include "gaussmap/mapping/simplify.h"
+
+#include <iostream>
+
+#include "budget.h"
+#include "common.h"
+#include "gaussmap/io/map_pcd.h"
+
+namespace gaussmap::app {
+namespace {
+
+struct SimplifyCommand {
+  std::string map;
+  Output output;
+  BudgetInput limit;
+  bool has_budget = false, json = false;
+};
+
+/// Completes `step` by the limit and adds it to the history.
+GaussianMap<3> simplified(const GaussianMap<3>& map, const SimplifyCommand& command, MapMetadata& metadata, Json step) {
+  const BudgetInput& limit = command.limit;
+  SimplifyOptions options;
+  options.merge_cost = mergeCost(limit);
+  options.threads = limit.refine.threads;
+  if (limit.cost) step["cost"] = *limit.cost;
+  if (!limit.max_bytes.empty()) {
+    step["max_bytes"] = maxBytes(limit);
+    addHistory(metadata, step);
+    const SaveOptions saving{false, SaveOptions().compression, options.threads};
+    return simplifyToBytes(
+        map, maxBytes(limit), [&](const GaussianMap<3>& trial) { return savedSize<3>(trial, metadata, saving); },
+        options);
+  }
+  if (limit.max_error > 0.0) {
+    step["max_error"] = limit.max_error;
+    addHistory(metadata, step);
+    SimplifiedToError to_error = simplifyToError(map, limit.max_error, options);
+    for (const ErrorNotReached& scale : to_error.not_reached)
+      warn("scale " + std::to_string(scale.scale) + " is farther away than --max-error as it came: 95 % are within " +
+           Json(scale.q95).dump() + " m; nothing of it was merged");
+    return std::move(to_error.map);
+  }
+  options.max_gaussians = maxGaussians(limit, map, 0);
+  if (command.has_budget) options.budget = limit.budget;
+  if (command.has_budget)
+    step["budget"] = limit.budget;
+  else
+    step["max_gaussians"] = limit.max_gaussians;
+  addHistory(metadata, step);
+  return simplify<3>(map, options);
+}
+
+void run(const SimplifyCommand& options) {
+  checkMapOutput(options.output, {options.map});
+  if (!options.has_budget && options.limit.max_gaussians.empty() && options.limit.max_bytes.empty() &&
+      options.limit.max_error == 0.0)
+    throw UsageError("simplify needs one of --budget, --max-gaussians, --max-bytes and --max-error");
+  checkBudget(options.limit);
+  const double start = now();
+  MapMetadata metadata;
+  const GaussianMap<3> old = loadAnyMap(options.map, &metadata);
+  metadata.erase("error_curves");  // of the scales as they were
+  const GaussianMap<3> map =
+      simplified(old, options, metadata, {{"command", "simplify"}, {"version", GAUSSMAP_VERSION}});
+  saveMap<3>(map, options.output.path, metadata,
+             {options.output.force, SaveOptions().compression, options.limit.refine.threads});
+  const std::uintmax_t bytes = std::filesystem::file_size(options.output.path);
+  if (options.json) {
+    printJson({{"map", options.output.path},
+               {"scales", scalesOf(map)},
+               {"bytes", bytes},
+               {"bytes_before", std::filesystem::file_size(options.map)},
+               {"seconds", now() - start}});
+    return;
+  }
+  std::cout << options.output.path << ": Gaussians per scale";
+  for (int s = 0; s < map.scales(); ++s)
+    std::cout << (s ? " / " : " ") << map.gaussianCount(s) << " of " << old.gaussianCount(s);
+  std::cout << ", " << humanBytes(bytes) << '\n';
+}
+
+}  // namespace
+
+void addSimplify(CLI::App& app) {
+  auto options = std::make_shared<SimplifyCommand>();
+  CLI::App* command = app.add_subcommand("simplify", "Merge the Gaussians of a map until there are as few as you want");
+  command->footer(
+      "Needs nothing but the Gaussians that the map has, so final and compressed maps can be simplified too; refine\n"
+      "makes the coarse scales anew from the finest. Every cell keeps one Gaussian at least.\n"
+      "Example: gaussmap simplify street.gmap -o small.gmap --max-gaussians 1=20000");
+  command->add_option("map", options->map, "map (.gmap, or PCD of Gaussians)")->required();
+  addOutput(*command, options->output, "map file to write (.gmap)");
+  addLimitOptions(*command, options->limit);
+  addCostOption(*command, options->limit);
+  addThreads(*command, options->limit.refine.threads);
+  command->add_flag("--json", options->json, "print the result for machines");
+  command->callback([options, command] {
+    options->has_budget = command->count("--budget") > 0;
+    run(*options);
+  });
+}
+
+}  // namespace gaussmap::app

@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// gaussmap_segments_benchmark [--data DIR] [--seeds 3]: maps of line segments beside what is usually done, and the
+// study of Leal, Scheding, Dissanayake 2000. DIR has the directories carmen_intel and carmen_csail with a log each;
+// without it only the simulated plan is scanned. Prints tables in Markdown. One thread.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+#include <functional>
+#include <iostream>
+
+#include "gaussmap/evaluation/segment_score.h"
+#include "gaussmap/evaluation/wall_score.h"
+#include "gaussmap/segments/segment_fitter.h"
+#include "segment_baselines.h"
+#include "segment_data.h"
+
+namespace gaussmap::benchmark {
+namespace {
+
+constexpr std::size_t kMostSegments = 500;
+constexpr double kRangeNoise = 0.02, kPositionNoise = 0.02;  // of the simulated plan [m]
+constexpr int kRuns = 5;                                     // of which the fastest counts
+
+using Scans = std::vector<LaserScan>;
+using Method = std::function<SegmentMap(const Scans&)>;
+
+/// Processor time: other programs on the machine do not count.
+double now() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+SegmentFitterOptions policy(EvidencePolicy policy, std::uint64_t seed = 1) {
+  SegmentFitterOptions options;
+  options.policy = policy;
+  options.particles.seed = seed;
+  return options;
+}
+
+/// The paper to the letter: particles of a segment forgotten at random, a fixed threshold, nothing decided on as a
+/// whole.
+SegmentFitterOptions literal(std::uint64_t seed = 1) {
+  SegmentFitterOptions options = policy(EvidencePolicy::ParticleSets, seed);
+  options.particles.limit = ParticleLimit::Segment;
+  options.prune = options.refine = false;
+  return options;
+}
+
+SegmentMap fitMap(const Scans& scans, const SegmentFitterOptions& options,
+                  const std::shared_ptr<SegmentUtility>& utility = {}) {
+  SegmentFitter fitter(options, utility);
+  for (const LaserScan& scan : scans) fitter.add(scan);
+  return fitter.map();
+}
+
+void holdOut(const Scans& scans) {
+  const Scans even = half(scans, 0), odd = half(scans, 1);
+  std::printf("| %-36s | segments | cov5 | cov10 | rms [m] | length [m] | r10 | viol |\n",
+              "even scans map, odd scans test");
+  std::printf("|---|---|---|---|---|---|---|---|\n");
+  const auto row = [&](const char* name, const SegmentMap& map) {
+    const HoldOutScore score = scoreHoldOut(map, odd);
+    std::printf("| %-36s | %4zu | %.3f | %.3f | %.4f | %5.1f | %.3f | %.3f |\n", name, map.segments.size(),
+                score.within_5cm, score.within_10cm, score.rms, map.totalLength(), score.predicted_10cm,
+                score.blocked_early);
+    std::fflush(stdout);
+  };
+  const SegmentMap ours = fitMap(even, policy(EvidencePolicy::MomentCells));
+  const std::size_t count = std::min(ours.segments.size(), kMostSegments);
+  row("moments", ours);
+  row("particles", fitMap(even, policy(EvidencePolicy::ParticleSets)));
+  row("the paper, literal", fitMap(even, literal(), std::make_shared<ViewpointInvariantUtility>()));
+  row("iterative end-point fit", endPointFit(even, count));
+  row("RANSAC + total least squares", ransac(even, count));
+  std::printf("\n");
+}
+
+/// Means over seeds.
+void plan(double position_noise, int seeds) {
+  std::printf(
+      "| plan, ranges +- %.0f cm, poses +- %.0f cm | segments | recall 5 cm | recall 2 cm | precision 5 cm | offset "
+      "[mm] | angle [deg] | corners [cm] | NEES |\n|---|---|---|---|---|---|---|---|---|\n",
+      100.0 * kRangeNoise, 100.0 * position_noise);
+  const std::vector<Segment> walls = truePlan();
+  const auto row = [&](const char* name, bool has_covariance,
+                       const std::function<SegmentMap(const Scans&, std::uint64_t)>& make) {
+    double count = 0, recall = 0, recall2 = 0, precision = 0, offset = 0, angle = 0, corner = 0, nees = 0;
+    for (int seed = 1; seed <= seeds; ++seed) {
+      const auto number = static_cast<std::uint64_t>(seed);
+      const SegmentMap map = make(scanPlan(kRangeNoise, position_noise, number), number);
+      const WallScore score = scoreWalls(map, walls);
+      WallScoreOptions strict;
+      strict.tolerance = 0.02;
+      count += static_cast<double>(map.segments.size());
+      recall += score.recall;
+      recall2 += scoreWalls(map, walls, strict).recall;
+      precision += score.precision;
+      offset += 1000.0 * score.offset_rms;
+      angle += score.angle_rms * 180.0 / std::acos(-1.0);
+      corner += 100.0 * score.corner_median;
+      nees += score.normalised_error;
+    }
+    const double n = seeds;
+    std::printf("| %-24s | %.0f | %.4f | %.4f | %.4f | %.2f | %.3f | %.2f | ", name, count / n, recall / n, recall2 / n,
+                precision / n, offset / n, angle / n, corner / n);
+    std::printf(has_covariance ? "%.2f |\n" : "- |\n", nees / n);
+    std::fflush(stdout);
+  };
+  row("moments", true,
+      [](const Scans& scans, std::uint64_t seed) { return fitMap(scans, policy(EvidencePolicy::MomentCells, seed)); });
+  row("particles", true,
+      [](const Scans& scans, std::uint64_t seed) { return fitMap(scans, policy(EvidencePolicy::ParticleSets, seed)); });
+  row("iterative end-point fit", false,
+      [](const Scans& scans, std::uint64_t) { return endPointFit(scans, kMostSegments); });
+  std::printf("\n");
+}
+
+/// Beams a second: scan by scan, and with the map at the end.
+void speed(const Scans& scans) {
+  std::size_t beams = 0;
+  for (const LaserScan& scan : scans)
+    for (std::size_t beam = 0; beam < scan.ranges.size(); ++beam) beams += scan.returned(beam);
+  const auto rate = [&](double seconds) { return static_cast<double>(beams) / seconds / 1e6; };
+  double baseline = 1e300;
+  for (int run = 0; run < kRuns; ++run) {
+    const double start = now();
+    endPointFit(scans, kMostSegments);
+    baseline = std::min(baseline, now() - start);
+  }
+  std::printf(
+      "| all scans, %zu beams | M beams/s | with the map | end-point fit's time / ours | memory [MB] "
+      "|\n|---|---|---|---|---|\n",
+      beams);
+  for (const EvidencePolicy kind : {EvidencePolicy::MomentCells, EvidencePolicy::ParticleSets}) {
+    double adding = 1e300, all = 1e300;
+    std::size_t memory = 0;
+    for (int run = 0; run < kRuns; ++run) {
+      const double start = now();
+      SegmentFitter fitter(policy(kind));
+      for (const LaserScan& scan : scans) fitter.add(scan);
+      adding = std::min(adding, now() - start);
+      fitter.map();
+      all = std::min(all, now() - start);
+      memory = fitter.memoryBytes();
+    }
+    std::printf("| %s | %.2f | %.2f | %.2f | %.1f |\n", kind == EvidencePolicy::MomentCells ? "moments" : "particles",
+                rate(adding), rate(all), baseline / adding, static_cast<double>(memory) / 1e6);
+  }
+  std::printf("| iterative end-point fit | | %.2f | 1 | |\n\n", rate(baseline));
+}
+
+/// Figs. 7 and 8 of the paper: what l_min does, with its utility.
+void study(const char* name, const Scans& scans, int seeds) {
+  std::printf(
+      "| %s: l_min [m] | policy | normal deviation [cm] | segments | splits | merges | coverage "
+      "|\n|---|---|---|---|---|---|---|\n",
+      name);
+  for (const EvidencePolicy kind : {EvidencePolicy::MomentCells, EvidencePolicy::ParticleSets}) {
+    const bool random = kind == EvidencePolicy::ParticleSets;
+    for (const double min_length : {0.5, 0.75, 1.0, 1.5, 2.0, 2.5, 3.0}) {
+      double variance = 0, segments = 0, splits = 0, merges = 0, coverage = 0;
+      const int runs = random ? seeds : 1;
+      for (int seed = 1; seed <= runs; ++seed) {
+        SegmentFitterOptions options = policy(kind, static_cast<std::uint64_t>(seed));
+        options.min_length = min_length;
+        options.refine = false;
+        ViewpointInvariantOptions utility;
+        utility.min_length = min_length;
+        SegmentFitter fitter(options, std::make_shared<ViewpointInvariantUtility>(utility));
+        SegmentStatistics last;
+        double covered = 0, beams = 0;
+        for (const LaserScan& scan : scans) {
+          last = fitter.add(scan);
+          splits += static_cast<double>(last.splits);
+          merges += static_cast<double>(last.merges);
+          covered += last.coverage * static_cast<double>(last.beams);
+          beams += static_cast<double>(last.beams);
+        }
+        variance += last.normal_variance;
+        segments += static_cast<double>(last.segments);
+        coverage += covered / beams;
+      }
+      std::printf("| %.2f | %s | %.2f | %.0f | %.0f | %.0f | %.3f |\n", min_length, random ? "particles" : "moments",
+                  100.0 * std::sqrt(variance / runs), segments / runs, splits / runs, merges / runs, coverage / runs);
+      std::fflush(stdout);
+    }
+  }
+  std::printf("\n");
+}
+
+/// How fine a map is around a place.
+struct Detail {
+  double per_metre = 0.0;  // segments a metre of length
+  double variance = 0.0;   // mean of their normal variances, by length [m^2]
+
+  void add(const SegmentMap& map, const Vector<2>& place, double radius) {
+    double count = 0.0, length = 0.0, sum = 0.0;
+    for (const Segment& segment : map.segments) {
+      if (segment.distance(place) > radius) continue;
+      ++count;
+      length += segment.length();
+      sum += segment.length() * segment.normal_variance;
+    }
+    if (length == 0.0) return;
+    per_metre += count / length;
+    variance += sum / length;
+  }
+};
+
+/// Eq. [5] of the paper: more detail round the sensor, and less again behind it.
+void viewpoint(const char* name, const Scans& scans) {
+  constexpr std::size_t kEvery = 50;  // scans between two places
+  ViewpointDependentOptions dependent;
+  dependent.far.min_length = 3.0;
+  const double radius = dependent.radius, away = 3.0 * radius;
+  SegmentFitterOptions options;
+  options.refine = false;
+  SegmentFitter near(options, std::make_shared<ViewpointDependentUtility>(dependent));
+  SegmentFitter far(options, std::make_shared<ViewpointInvariantUtility>(dependent.far));
+  std::vector<Vector<2>> ahead;  // places that the sensor has not left yet
+  Detail there[2], behind[2];
+  double visited = 0.0, left = 0.0;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    near.add(scans[i]);
+    far.add(scans[i]);
+    const Vector<2> here = scans[i].pose.translation;
+    const auto isLeft = [&](const Vector<2>& place) { return (place - here).norm() > away; };
+    const bool is_visit = i % kEvery == kEvery - 1;
+    if (!is_visit && std::none_of(ahead.begin(), ahead.end(), isLeft)) continue;
+    const SegmentMap maps[] = {near.map(), far.map()};
+    for (const Vector<2>& place : ahead) {
+      if (!isLeft(place)) continue;
+      ++left;
+      for (int m = 0; m < 2; ++m) behind[m].add(maps[m], place, radius);
+    }
+    ahead.erase(std::remove_if(ahead.begin(), ahead.end(), isLeft), ahead.end());
+    if (!is_visit) continue;
+    ahead.push_back(here);
+    ++visited;
+    for (int m = 0; m < 2; ++m) there[m].add(maps[m], here, radius);
+  }
+  std::printf(
+      "| %s, l_min 3 m: within %.0f m of a place | segments a metre, sensor there | %.0f m away | normal deviation "
+      "[cm], sensor there | %.0f m away |\n|---|---|---|---|---|\n",
+      name, radius, away, away);
+  for (int m = 0; m < 2; ++m)
+    std::printf("| viewpoint-%s | %.3f | %.3f | %.2f | %.2f |\n", m == 0 ? "dependent" : "invariant",
+                there[m].per_metre / visited, behind[m].per_metre / left,
+                100.0 * std::sqrt(there[m].variance / visited), 100.0 * std::sqrt(behind[m].variance / left));
+  std::printf("\n");
+}
+
+void run(const std::string& data, int seeds) {
+  for (const double noise : {0.0, kPositionNoise}) plan(noise, seeds);
+  if (data.empty()) return;
+  const Scans intel = readLogIn(std::filesystem::path(data) / "carmen_intel");
+  const Scans csail = readLogIn(std::filesystem::path(data) / "carmen_csail");
+  std::printf("carmen_intel\n\n");
+  holdOut(intel);
+  speed(intel);
+  study("carmen_intel", intel, seeds);
+  study("carmen_csail", csail, seeds);
+  viewpoint("carmen_intel", intel);
+  viewpoint("carmen_csail", csail);
+}
+
+}  // namespace
+}  // namespace gaussmap::benchmark
+
+int main(int argc, char** argv) {
+  CLI::App app("Maps of line segments: accuracy, speed, and the paper's study");
+  std::string data;
+  int seeds = 3;
+  app.add_option("--data", data, "directory with carmen_intel and carmen_csail")->check(CLI::ExistingDirectory);
+  app.add_option("--seeds", seeds, "of the simulated noise and of particles")->check(CLI::Range(1, 1000));
+  CLI11_PARSE(app, argc, argv);
+  try {
+    gaussmap::benchmark::run(data, seeds);
+    return 0;
+  } catch (const std::exception& error) {
+    std::cerr << "gaussmap_segments_benchmark: " << error.what() << '\n';
+    return 1;
+  }
+}
