@@ -2,6 +2,7 @@
 #include "registration/normal_equations.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <limits>
 
 #include "common/parallel.h"
