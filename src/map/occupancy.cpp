@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace gaussmap {
@@ -21,6 +23,9 @@ void inheritOccupancy(const MapScale<D>& finer, MapScale<D>& coarse) {
 
 template <int D>
 GaussianMap<D> withOccupancy(const GaussianMap<D>& map, std::vector<float> log_odds) {
+  if (log_odds.size() != map.gaussianCount(0))
+    throw std::invalid_argument(std::to_string(log_odds.size()) + " occupancies for the " +
+                                std::to_string(map.gaussianCount(0)) + " Gaussians of the finest scale");
   std::vector<MapScale<D>> scales;
   for (int s = 0; s < map.scales(); ++s) {
     scales.push_back(map.scale(s));
