@@ -228,4 +228,32 @@ Json scalesOf(const GaussianMap<3>& map) {
   return scales;
 }
 
+std::string perScale(const std::vector<std::size_t>& counts) {
+  std::string text;
+  for (const std::size_t count : counts) text += (text.empty() ? "" : " / ") + std::to_string(count);
+  return text;
+}
+
+std::string perScale(const GaussianMap<3>& map) {
+  std::vector<std::size_t> counts;
+  for (int s = 0; s < map.scales(); ++s) counts.push_back(map.gaussianCount(s));
+  return perScale(counts);
+}
+
+std::string perScale(const GaussianMap<3>& map, const GaussianMap<3>& whole) {
+  std::string text;
+  for (int s = 0; s < map.scales(); ++s)
+    text +=
+        (s > 0 ? " / " : "") + std::to_string(map.gaussianCount(s)) + " of " + std::to_string(whole.gaussianCount(s));
+  return text;
+}
+
+void reportMap(const std::string& path, const GaussianMap<3>& map, const std::string& counts, double start, bool json) {
+  const std::uintmax_t bytes = std::filesystem::file_size(path);
+  if (json)
+    printJson({{"map", path}, {"scales", scalesOf(map)}, {"bytes", bytes}, {"seconds", now() - start}});
+  else
+    std::cout << path << ": Gaussians per scale " << counts << ", " << humanBytes(bytes) << '\n';
+}
+
 }  // namespace gaussmap::app

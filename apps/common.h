@@ -108,4 +108,13 @@ void addHistory(MapMetadata& metadata, const Json& step);
 /// Cells and Gaussians of every scale.
 Json scalesOf(const GaussianMap<3>& map);
 
+/// "526732 / 11327 / 129", finest first.
+std::string perScale(const std::vector<std::size_t>& counts);
+/// The Gaussians of a map in that way; with the map that it was made from: "1000 of 526732 / 20 of 11327".
+std::string perScale(const GaussianMap<3>& map);
+std::string perScale(const GaussianMap<3>& map, const GaussianMap<3>& whole);
+
+/// What a command says of the map that it has written: file, `counts` (see perScale()) and bytes, or all for machines.
+void reportMap(const std::string& path, const GaussianMap<3>& map, const std::string& counts, double start, bool json);
+
 }  // namespace gaussmap::app

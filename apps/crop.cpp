@@ -63,15 +63,7 @@ void run(const CropCommand& options) {
   step[options.box.empty() ? "polygon" : "box"] = options.box.empty() ? options.polygon : options.box;
   addHistory(metadata, step);
   saveMap<3>(map, options.output.path, metadata, {options.output.force});
-  const std::uintmax_t bytes = std::filesystem::file_size(options.output.path);
-  if (options.json) {
-    printJson({{"map", options.output.path}, {"scales", scalesOf(map)}, {"bytes", bytes}, {"seconds", now() - start}});
-    return;
-  }
-  std::cout << options.output.path << ": Gaussians per scale";
-  for (int s = 0; s < map.scales(); ++s)
-    std::cout << (s ? " / " : " ") << map.gaussianCount(s) << " of " << whole.gaussianCount(s);
-  std::cout << ", " << humanBytes(bytes) << '\n';
+  reportMap(options.output.path, map, perScale(map, whole), start, options.json);
 }
 
 }  // namespace

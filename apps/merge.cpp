@@ -88,9 +88,8 @@ void run(const MergeCommand& options) {
     return;
   }
   std::cout << options.output.path << ": " << paths.size() << " maps, " << static_cast<std::int64_t>(std::round(points))
-            << " points, " << (merged.canGrow() ? "exact moments" : "Gaussians only") << ", Gaussians per scale";
-  for (int s = 0; s < merged.scales(); ++s) std::cout << (s ? " / " : " ") << merged.gaussianCount(s);
-  std::cout << ", " << humanBytes(bytes) << ", " << std::round(seconds * 100.0) / 100.0 << " s\n";
+            << " points, " << (merged.canGrow() ? "exact moments" : "Gaussians only") << ", Gaussians per scale "
+            << perScale(merged) << ", " << humanBytes(bytes) << ", " << std::round(seconds * 100.0) / 100.0 << " s\n";
 }
 
 }  // namespace

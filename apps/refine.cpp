@@ -28,14 +28,7 @@ void run(const RefineCommand& options) {
   map = refineWithin(std::move(map), options.budget, metadata, {{"command", "refine"}, {"version", GAUSSMAP_VERSION}});
   saveMap<3>(map, options.output.path, metadata,
              {options.output.force, SaveOptions().compression, options.budget.refine.threads});
-  const std::uintmax_t bytes = std::filesystem::file_size(options.output.path);
-  if (options.json) {
-    printJson({{"map", options.output.path}, {"scales", scalesOf(map)}, {"bytes", bytes}, {"seconds", now() - start}});
-    return;
-  }
-  std::cout << options.output.path << ": Gaussians per scale";
-  for (int s = 0; s < map.scales(); ++s) std::cout << (s ? " / " : " ") << map.gaussianCount(s);
-  std::cout << ", " << humanBytes(bytes) << '\n';
+  reportMap(options.output.path, map, perScale(map), start, options.json);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 // gaussmap register: where scans were taken, in the frame of a map.
 #include <cmath>
 #include <cstdio>
-#include <optional>
 
 #include "common.h"
 #include "gaussmap/io/map_pcd.h"

@@ -125,9 +125,7 @@ void run(const RestoreCommand& options) {
     return;
   }
   std::cout << options.output.path << ": " << clusters << (clusters == 1 ? " cluster" : " clusters") << " of " << points
-            << " points brought back, Gaussians per scale";
-  for (int s = 0; s < map.scales(); ++s) std::cout << (s ? " / " : " ") << map.gaussianCount(s);
-  std::cout << ", " << humanBytes(bytes) << '\n';
+            << " points brought back, Gaussians per scale " << perScale(map) << ", " << humanBytes(bytes) << '\n';
 }
 
 }  // namespace

@@ -33,10 +33,4 @@ std::string summaryOf(const std::vector<ScanSource>& scans, const PointCounts& c
   return text.str();
 }
 
-std::string perScale(const std::vector<std::size_t>& counts) {
-  std::string text;
-  for (const std::size_t count : counts) text += (text.empty() ? "" : " / ") + std::to_string(count);
-  return text;
-}
-
 }  // namespace gaussmap::app

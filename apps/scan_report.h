@@ -20,7 +20,4 @@ Json historyOf(const std::vector<ScanSource>& scans, const PointCounts& counts);
 /// "20 scans, 2203027 points (left out: ...)".
 std::string summaryOf(const std::vector<ScanSource>& scans, const PointCounts& counts);
 
-/// "526732 / 11327 / 129", finest first.
-std::string perScale(const std::vector<std::size_t>& counts);
-
 }  // namespace gaussmap::app

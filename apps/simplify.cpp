@@ -75,10 +75,8 @@ void run(const SimplifyCommand& options) {
                {"seconds", now() - start}});
     return;
   }
-  std::cout << options.output.path << ": Gaussians per scale";
-  for (int s = 0; s < map.scales(); ++s)
-    std::cout << (s ? " / " : " ") << map.gaussianCount(s) << " of " << old.gaussianCount(s);
-  std::cout << ", " << humanBytes(bytes) << '\n';
+  std::cout << options.output.path << ": Gaussians per scale " << perScale(map, old) << ", " << humanBytes(bytes)
+            << '\n';
 }
 
 }  // namespace

@@ -4,11 +4,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <string>
 
 #include "gaussmap/io/pcd_reader.h"
 #include "gaussmap/io/pcd_writer.h"
+#include "io/pcd_points.h"
 
 namespace gaussmap {
 namespace {
@@ -119,26 +119,13 @@ void writeRemoved(const std::filesystem::path& path, const std::vector<RemovedCl
 std::vector<RemovedCluster<3>> readRemoved(const std::filesystem::path& path) {
   const PcdReader reader(path);
   Record record{};
-  const std::vector<PcdOutput> wanted = fieldsOf(record);
-  std::vector<std::size_t> offsets;
-  for (const PcdOutput& output : wanted) {
-    const PcdField* const field = reader.header().find(output.name);
-    if (!field || field->type != output.type || field->size != output.size || field->count != output.count)
-      throw FileError(path,
-                      "is no cloud of deleted clusters: field '" + output.name + "' is missing or of another type");
-    offsets.push_back(field->offset);
-  }
-  const std::vector<char> bytes = reader.records();
   std::vector<RemovedCluster<3>> removed;
   removed.reserve(reader.size());
-  for (std::size_t i = 0; i < reader.size(); ++i) {
-    const char* const point = bytes.data() + i * reader.header().record_size;
-    for (std::size_t k = 0; k < wanted.size(); ++k)  // the fields point into `record`, which is ours
-      std::memcpy(const_cast<void*>(wanted[k].data), point + offsets[k], wanted[k].size * wanted[k].count);
+  readPoints(reader, fieldsOf(record), "cloud of deleted clusters", [&](std::size_t i) {
     removed.push_back(fromRecord(record));
     if (!isUsable(removed.back()))
       throw FileError(path, "point " + std::to_string(i) + " is no cluster: a value is impossible or not finite");
-  }
+  });
   return removed;
 }
 

@@ -9,6 +9,7 @@
 #include "gaussmap/io/pcd_reader.h"
 #include "gaussmap/io/pcd_writer.h"
 #include "gaussmap/io/segment_files.h"
+#include "io/pcd_points.h"
 #include "io/segment_checks.h"
 
 namespace gaussmap {
@@ -78,24 +79,10 @@ bool isPossible(const Segment& segment) {
 std::vector<Record> readRecords(const std::filesystem::path& path) {
   const PcdReader reader(path);
   Record record{};
-  const std::vector<PcdOutput> wanted = fieldsOf(record);
-  std::vector<std::size_t> offsets;
-  for (const PcdOutput& output : wanted) {
-    const PcdField* const field = reader.header().find(output.name);
-    if (!field || field->type != output.type || field->size != output.size || field->count != output.count)
-      throw FileError(path, "is no map of segments: field '" + output.name + "' is missing or of another type");
-    offsets.push_back(field->offset);
-  }
-  if (reader.size() % 2 != 0) throw FileError(path, "is no map of segments: an odd number of end points");
-  const std::vector<char> bytes = reader.records();
   std::vector<Record> records;
   records.reserve(reader.size());
-  for (std::size_t i = 0; i < reader.size(); ++i) {
-    const char* const point = bytes.data() + i * reader.header().record_size;
-    for (std::size_t k = 0; k < wanted.size(); ++k)  // the fields point into `record`, which is ours
-      std::memcpy(const_cast<void*>(wanted[k].data), point + offsets[k], wanted[k].size * wanted[k].count);
-    records.push_back(record);
-  }
+  readPoints(reader, fieldsOf(record), "map of segments", [&](std::size_t) { records.push_back(record); });
+  if (records.size() % 2 != 0) throw FileError(path, "is no map of segments: an odd number of end points");
   return records;
 }
 

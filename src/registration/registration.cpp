@@ -91,6 +91,7 @@ void judge(const NormalEquations& sums, double range, const RegistrationOptions&
   const Matrix6 scaled = unit.asDiagonal() * sums.information * unit.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Matrix6> solver(scaled);
   const Vector6 told = solver.eigenvalues();
+  if (!(told[5] > 0.0)) return;  // what it met fills its cells
   result.degenerate = !(told[0] > options.degenerate * told[5]);
   result.weakest = solver.eigenvectors().col(0);
   const Vector6 variances = told.cwiseMax(1e-12 * told[5]).cwiseInverse();

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "online/online_scenes.h"
+#include "online/online_state.h"
 
 namespace gaussmap {
 namespace {
@@ -69,7 +70,47 @@ TEST(SplitShared, TheFloorIsFlatAgainWhenABoxHasGone) {
   }
   EXPECT_FALSE(splits.map().find(splits.map().grid().keyOf({5.1, 0.0, -1.0}), 0));
   EXPECT_LT(worstOfFloor(splits.map()), 1e-3);
+  for (int s = 1; s < 3; ++s) EXPECT_DOUBLE_EQ(splits.map().weight(s), splits.map().weight(0));
   EXPECT_GT(worstOfFloor(leaves.map()), 0.02);
+}
+
+TEST(SplitShared, TheFloorInFrontOfTheBoxKeepsEveryPoint) {  // beside its cells, but on the surface
+  OnlineOptions keep = floorOptions();
+  keep.forget = false;
+  OnlineMapper<3> mapper(floorOptions()), keeper(keep);
+  for (int i = 0; i < 9; ++i) {
+    mapper.add(floorScan(i < 2, i));
+    keeper.add(floorScan(i < 2, i));
+  }
+  const GaussianMapOctree map = mapper.map(), all = keeper.map();
+  int cells = 0;
+  for (double y = -0.5; y < 0.55; y += 0.2) {
+    const CellKey<3> key = map.grid().keyOf({4.9, y, kFloor});
+    const auto cell = map.find(key, 0), whole = all.find(key, 0);
+    ASSERT_EQ(cell.has_value(), whole.has_value());
+    if (!cell) continue;
+    ++cells;
+    EXPECT_EQ(map.scale(0).moments[*cell], all.scale(0).moments[*whole]);
+  }
+  EXPECT_GE(cells, 4);
+}
+
+TEST(SplitShared, WhatWentWithItsCellIsNotRemembered) {  // else it would be subtracted from what comes there later
+  OnlineCells<3> cells(Grid<3>({0.2, 5, 3, 0.0}));
+  const CellKey<3> key{3, 4, 5}, other{9, 9, 9};
+  std::deque<ScanSums<3>> recent;
+  for (std::uint32_t number = 0; number < 3; ++number) {
+    recent.push_back({number, MomentGrid<3>(0.2)});
+    recent.back().sums.addPoints({cells.grid().centre(key, 0), cells.grid().centre(other, 0)});
+  }
+  OnlineStatistics statistics;
+  splitSharedCells<3>(cells, {}, {{key, {}, -1.0f}}, recent, floorOptions(), {}, statistics);
+  for (const ScanSums<3>& scan : recent) {
+    EXPECT_EQ(*scan.sums.find(key), CellMoments<3>());
+    EXPECT_EQ(scan.sums.find(other)->count, 1);
+    EXPECT_EQ(scan.sums.pointCount(), 1);
+  }
+  EXPECT_EQ(statistics.deleted, 0u);
 }
 
 TEST(SplitShared, ABoxThatComesLeavesNothingInAFloorSeenBefore) {  // deleted by looking back, scan by scan

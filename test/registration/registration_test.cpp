@@ -14,6 +14,7 @@
 #include "gaussmap/mapping/refine.h"
 #include "gaussmap/simulation/simulation.h"
 #include "registration/normal_equations.h"
+#include "registration/scan_gaussians.h"
 
 namespace gaussmap {
 namespace {
@@ -99,6 +100,16 @@ TEST(NormalEquations, KnowNothingAlongAnAxisThatFillsItsCell) {
   EXPECT_NEAR(r.squared, 0.04 * 0.04 / 0.0016, 1e-12);  // across the wall only
   EXPECT_NEAR(r.information(0, 0), 1.0 / 0.0016, 1e-9);
   EXPECT_EQ(r.information(1, 1), 0.0);
+}
+
+TEST(Registration, TakesFromTheWholeScanWhenItIsLarge) {
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 0; i < 1000; ++i) points.emplace_back(0.25 + 0.5 * i, 0.25, 0.25);
+  RegistrationOptions few;
+  few.most_gaussians = 10;
+  const std::vector<Gaussian<3>> taken = gaussiansOf(points, 0.5, few);
+  ASSERT_EQ(taken.size(), 10u);
+  for (std::size_t i = 0; i < 10; ++i) EXPECT_NEAR(taken[i].mean.x(), 0.25 + 50.0 * double(i), 1e-3);
 }
 
 TEST(Registration, FindsThePoseOfTheScanThatTheMapIsMadeOf) {

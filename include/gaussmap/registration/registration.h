@@ -25,7 +25,7 @@ struct RegistrationOptions {
 struct RegistrationResult {
   Pose pose;  ///< scan frame to map frame
   /// Of (x, y, z [m], rotation vector about the sensor [rad]), map axes; of the last iteration. Symmetric positive
-  /// definite, unless nothing of the scan met the map: then it is zero.
+  /// definite, unless nothing of the map tells anything of the pose: then it is zero.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   double fitness = 0.0;       ///< share of the scan's Gaussians within 3 standard deviations of one of the map
   double mean_squared = 0.0;  ///< of these, the mean squared Mahalanobis distance
