@@ -43,6 +43,7 @@ void addHausdorff(CLI::App& app);
 void addSimulate(CLI::App& app);
 void addDraw(CLI::App& app);
 void addSegments(CLI::App& app);
+void addView(CLI::App& app);
 
 /// One line on stderr.
 void warn(const std::string& text);

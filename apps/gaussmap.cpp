@@ -6,6 +6,7 @@
 #include <new>
 
 #include "common.h"
+#include "gaussmap/io/signals.h"
 
 namespace gaussmap::app {
 namespace {
@@ -28,11 +29,20 @@ std::string explain(const CLI::ParseError& error, const CLI::App& app) {
   return text + " (see gaussmap " + used.front()->get_name() + " --help)";
 }
 
+/// One line on stderr, whatever file names are made of. Returns the exit code.
+int complain(std::string text, int code) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20) c = '?';
+  std::cerr << "gaussmap: " << text << '\n';
+  return code;
+}
+
 }  // namespace
 }  // namespace gaussmap::app
 
 int main(int argc, char** argv) {
   using namespace gaussmap::app;
+  gaussmap::handleSignals("gaussmap");
   CLI::App app("Compact multi-scale Gaussian maps from range scans", "gaussmap");
   app.set_version_flag("--version", "gaussmap " GAUSSMAP_VERSION);
   app.require_subcommand(1);
@@ -56,6 +66,7 @@ int main(int argc, char** argv) {
   addSimulate(app);
   addDraw(app);
   addSegments(app);
+  addView(app);
   try {
     app.parse(argc, argv);
     std::cout.flush();
@@ -63,16 +74,14 @@ int main(int argc, char** argv) {
     return 0;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    std::cerr << "gaussmap: " << explain(error, app) << '\n';
-    return 2;
+    return complain(explain(error, app), 2);
   } catch (const UsageError& error) {
-    std::cerr << "gaussmap: " << error.what() << '\n';
-    return 2;
+    return complain(error.what(), 2);
   } catch (const std::bad_alloc&) {
-    std::cerr << "gaussmap: out of memory: take coarser cells (--resolution) or fewer scans\n";
-    return 1;
+    return complain("out of memory: take coarser cells (--resolution) or fewer scans", 1);
   } catch (const std::exception& error) {
-    std::cerr << "gaussmap: " << error.what() << '\n';
-    return 1;
+    const std::string what = error.what();
+    const bool no_thread = what.compare(0, 14, "pthread_create") == 0;  // as TBB words it
+    return complain(what + (no_thread ? ": no thread can be started, try --threads 1" : ""), 1);
   }
 }

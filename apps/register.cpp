@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap register: where scans were taken, in the frame of a map.
+// gaussmap register: where scans were taken, or how other maps lie, in the frame of a map.
 #include <cmath>
 #include <cstdio>
 
@@ -15,8 +15,8 @@ namespace gaussmap::app {
 namespace {
 
 struct RegisterCommand {
-  std::vector<std::string> inputs;  // scans, and the map as the last
-  std::vector<double> guess;        // x y z qx qy qz qw; empty: the VIEWPOINT of the first scan
+  std::vector<std::string> inputs;  // scans or maps, and the map to register with as the last
+  std::vector<double> guess;        // x y z qx qy qz qw; empty: the VIEWPOINT of the first scan, a map as it is
   std::string tum;
   bool force = false;
   RegistrationOptions options;
@@ -26,6 +26,7 @@ struct RegisterCommand {
 Pose guessOf(const RegisterCommand& command, const std::filesystem::path& first) {
   Pose guess;
   if (command.guess.empty()) {
+    if (isMap(first)) return guess;
     guess = PcdReader(first).header().viewpoint;
     if (const std::string fault = poseFault(guess); !fault.empty())
       throw FileError(first, "its VIEWPOINT is no first guess: " + fault + "; give --guess");
@@ -65,6 +66,12 @@ void print(const std::filesystem::path& scan, const RegistrationResult& result) 
               result.fitness, result.converged ? "" : ", not converged", result.degenerate ? ", degenerate" : "");
 }
 
+RegistrationResult registerFile(const std::filesystem::path& path, const GaussianMap<3>& map, const Pose& guess,
+                                const RegistrationOptions& options) {
+  if (isMap(path)) return registerMap(loadAnyMap(path), map, guess, options);
+  return registerScan(loadScan({path, Pose()}).points, map, guess, options);
+}
+
 void run(const RegisterCommand& command) {
   const std::filesystem::path map_path = command.inputs.back();
   const std::vector<std::filesystem::path> scans = listScans({command.inputs.begin(), std::prev(command.inputs.end())});
@@ -80,7 +87,7 @@ void run(const RegisterCommand& command) {
   Json all = Json::array();
   std::vector<TimedPose> trajectory;
   for (const std::filesystem::path& path : scans) {
-    const RegistrationResult result = registerScan(loadScan({path, Pose()}).points, map, guess, command.options);
+    const RegistrationResult result = registerFile(path, map, guess, command.options);
     if (result.fitness == 0.0)
       throw FileError(path, "meets nothing of the map from where it is looked for: give a nearer --guess");
     guess = result.pose;  // of the next scan
@@ -98,14 +105,16 @@ void run(const RegisterCommand& command) {
 
 void addRegister(CLI::App& app) {
   auto command = std::make_shared<RegisterCommand>();
-  CLI::App* const sub = app.add_subcommand("register", "Where scans were taken, in the frame of a map");
+  CLI::App* const sub =
+      app.add_subcommand("register", "Where scans were taken, or how other maps lie, in the frame of a map");
   sub->footer(
       "Prints x y z qx qy qz qw of every scan, standard deviations, and the share of the scan that lies on the map.\n"
       "The first is looked for at --guess or the VIEWPOINT of its file, each other one where the one before was "
       "found.\n"
+      "In place of a scan there may be a map: its Gaussians are moved onto the other's, from where they are.\n"
       "'degenerate' says that the scan does not tell some direction, as in a corridor.\n"
       "Example: gaussmap register scans/ street.gmap --tum poses.tum");
-  sub->add_option("inputs", command->inputs, "scans (.pcd files or directories of them), then the map")
+  sub->add_option("inputs", command->inputs, "scans (.pcd files or directories of them) or maps, then the map")
       ->required()
       ->expected(2, -1);
   sub->add_option("--guess", command->guess, "where the first scan is looked for: x y z qx qy qz qw")
@@ -113,7 +122,7 @@ void addRegister(CLI::App& app) {
       ->check(numberBetween(-1e12, 1e12));
   sub->add_option("--tum", command->tum, "write the poses, one line a scan: number x y z qx qy qz qw");
   sub->add_flag("--force", command->force, "replace the file of poses if it is there");
-  sub->add_option("--scan-resolution", command->options.resolution, "cells of the scan [m], 0 = twice the map's finest")
+  sub->add_option("--scan-resolution", command->options.resolution, "cells of the scan [m], 0 = as the map's finest")
       ->check(numberBetween(0.0, 1e6))
       ->capture_default_str();
   sub->add_option("--kernel", command->options.kernel, "standard deviations at which a residual counts half")

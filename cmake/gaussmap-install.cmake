@@ -5,7 +5,7 @@ include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/gaussmap)
 set(targets gaussmap_core)
 install(DIRECTORY include/gaussmap DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp"
-        PATTERN "pcl" EXCLUDE)
+        PATTERN "pcl" EXCLUDE PATTERN "viewer" EXCLUDE)
 if(GAUSSMAP_BUILD_PCL)
   list(APPEND targets gaussmap_pcl)
   install(DIRECTORY include/gaussmap/pcl DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/gaussmap)
@@ -13,6 +13,9 @@ endif()
 install(TARGETS ${targets} EXPORT gaussmap-targets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
         RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+if(GAUSSMAP_BUILD_APPS AND GAUSSMAP_BUILD_VIEWER)
+  install(TARGETS gaussmap_view RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})  # `gaussmap view` looks for it beside itself
+endif()
 if(GAUSSMAP_BUILD_APPS)
   install(TARGETS gaussmap_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()

@@ -9,6 +9,7 @@ packages=(
   libeigen3-dev libtbb-dev libnanoflann-dev libboost-dev   # core: algebra, threads, nearest neighbours, containers
   libsqlite3-dev libzstd-dev liblzf-dev zlib1g-dev         # core: map files, compressed PCD, laser logs
   libpcl-dev                                               # the PCL edge
+  libvtk9-dev libegl-dev libegl-mesa0 libx11-dev           # the viewer; Mesa draws pictures without a display
   libcli11-dev nlohmann-json3-dev                          # the command line
   libgtest-dev libbenchmark-dev liboctomap-dev             # tests, benchmarks and a peer for them
 )

@@ -1,26 +1,29 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs, builds, runs all tests. Usage: test/run.sh [--sanitize] (with: address and undefined-behaviour sanitizers)
+# Installs, builds, runs tests. Usage: test/run.sh [--sanitize | --threads]
+#   (nothing)   all tests, optimised
+#   --sanitize  all tests under address, leak and undefined-behaviour sanitizers (clang, without the viewer)
+#   --threads   the tests that use threads under the thread sanitizer
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-folder=build/release
-options=(-DCMAKE_BUILD_TYPE=Release -DGAUSSMAP_BUILD_BENCHMARKS=ON)
+select=()
 case "${1:-}" in
-  "") ;;
-  --sanitize)
-    folder=build/sanitize
-    # No benchmarks: pcl::VoxelGridCovariance, half in PCL's library and half in our instrumented program, reports itself.
-    options=(-DCMAKE_BUILD_TYPE=Debug -DGAUSSMAP_BUILD_BENCHMARKS=OFF "-DCMAKE_CXX_FLAGS=-O1 -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer")
+  "") preset=release ;;
+  --sanitize) preset=sanitize ;;
+  --threads)
+    preset=threads
+    select=(-R '[Tt]hread')
+    export TSAN_OPTIONS="suppressions=$PWD/test/tsan.supp halt_on_error=1"
     ;;
   *)
-    echo "usage: test/run.sh [--sanitize]" >&2
+    echo "usage: test/run.sh [--sanitize | --threads]" >&2
     exit 2
     ;;
 esac
 
 ./cmake/install-deps.sh
 launcher=$(command -v ccache || true)
-cmake -S . -B "$folder" -G Ninja -DCMAKE_CXX_COMPILER_LAUNCHER="$launcher" "${options[@]}" >/dev/null
-cmake --build "$folder" -j 2
-ctest --test-dir "$folder" -j 2 --output-on-failure --progress
+cmake --preset "$preset" -DCMAKE_CXX_COMPILER_LAUNCHER="$launcher" >/dev/null
+cmake --build "build/$preset" -j 2
+ctest --test-dir "build/$preset" -j 2 --output-on-failure --progress "${select[@]}"

@@ -5,57 +5,20 @@
 #include <stdexcept>
 #include <string>
 
+#include "common/morton.h"
+
 namespace gaussmap {
 namespace {
 
-constexpr double kFarthest = 1e150;    // [m]; squares beyond it would overflow
-constexpr double kNoExtent = 1e-200;   // [m]; squares below it are 0
-constexpr std::size_t kDigits = 2048;  // 11 bits of the code at once
-constexpr std::size_t kFewItems = 2000;
-
-/// Spreads the low 21 bits of a number to every third bit.
-std::uint64_t spread(std::uint64_t bits) {
-  bits &= 0x1FFFFF;
-  bits = (bits | bits << 32) & 0x1F00000000FFFFull;
-  bits = (bits | bits << 16) & 0x1F0000FF0000FFull;
-  bits = (bits | bits << 8) & 0x100F00F00F00F00Full;
-  bits = (bits | bits << 4) & 0x10C30C30C30C30C3ull;
-  return (bits | bits << 2) & 0x1249249249249249ull;
-}
-
-struct Item {
-  std::uint64_t code;
-  std::uint32_t index;
-};
-
-/// Sorts by code, keeping the order of equal ones.
-void sortByCode(Item* items, std::size_t count, std::vector<Item>& spare) {
-  if (count < kFewItems) {
-    std::stable_sort(items, items + count, [](const Item& a, const Item& b) { return a.code < b.code; });
-    return;
-  }
-  spare.resize(std::max(spare.size(), count));
-  Item *from = items, *to = spare.data();
-  for (int shift = 0; shift < 66; shift += 11) {  // six times, so that they end where they began
-    std::array<std::size_t, kDigits> place{};
-    for (std::size_t i = 0; i < count; ++i) ++place[from[i].code >> shift & (kDigits - 1)];
-    std::size_t sum = 0;
-    for (std::size_t& entry : place) {
-      const std::size_t here = entry;
-      entry = sum;
-      sum += here;
-    }
-    for (std::size_t i = 0; i < count; ++i) to[place[from[i].code >> shift & (kDigits - 1)]++] = from[i];
-    std::swap(from, to);
-  }
-}
+constexpr double kFarthest = 1e150;   // [m]; squares beyond it would overflow
+constexpr double kNoExtent = 1e-200;  // [m]; squares below it are 0
 
 }  // namespace
 
 struct PointTree::Builder {
   const std::vector<Vector<3>>& points;
   std::vector<Node>& nodes;
-  std::vector<Item> items, spare;
+  std::vector<MortonItem> items, spare;
 
   void addLeaf(std::size_t first, std::size_t last, std::size_t distinct) {
     nodes.push_back({{}, {}, std::uint32_t(first), std::uint32_t(last - first), 0, std::uint32_t(distinct)});
@@ -73,8 +36,7 @@ struct PointTree::Builder {
     const double scale = 2097151.0 / extent;  // 21 bits an axis
     for (std::size_t i = first; i < last; ++i) {
       const Vector<3> offset = scale * (points[items[i].index] - low);
-      items[i].code = spread(std::uint64_t(offset.x())) | spread(std::uint64_t(offset.y())) << 1 |
-                      spread(std::uint64_t(offset.z())) << 2;
+      items[i].code = mortonCode(std::uint64_t(offset.x()), std::uint64_t(offset.y()), std::uint64_t(offset.z()));
     }
     sortByCode(items.data() + first, last - first, spare);
     split(first, last);
@@ -89,7 +51,7 @@ struct PointTree::Builder {
     const std::uint64_t bit = differing ^ differing >> 1;
     const auto middle =
         std::partition_point(items.begin() + std::ptrdiff_t(first), items.begin() + std::ptrdiff_t(last),
-                             [bit](const Item& item) { return (item.code & bit) == 0; });
+                             [bit](const MortonItem& item) { return (item.code & bit) == 0; });
     const std::size_t node = nodes.size(), half = std::size_t(middle - items.begin());
     nodes.push_back({{}, {}, std::uint32_t(first), std::uint32_t(last - first), 0, 0});
     split(first, half);
@@ -100,7 +62,7 @@ struct PointTree::Builder {
 
 PointTree::PointTree(const std::vector<Vector<3>>& points) {
   if (points.empty()) return;
-  Builder builder{points, nodes_, std::vector<Item>(points.size()), {}};
+  Builder builder{points, nodes_, std::vector<MortonItem>(points.size()), {}};
   for (std::size_t i = 0; i < points.size(); ++i) builder.items[i].index = std::uint32_t(i);
   nodes_.reserve(points.size() / 4);
   builder.sortAndSplit(0, points.size());

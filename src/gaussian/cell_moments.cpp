@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gaussmap/gaussian/cell_moments.h"
 
+#include <stdexcept>
+
 namespace gaussmap {
 
 template <int D>
@@ -35,6 +37,11 @@ Gaussian<D> CellMoments<D>::gaussian(double side, double noise) const {
   Gaussian<D> gaussian{mean(side), covariance(side), static_cast<double>(count)};
   gaussian.cov.diagonal().array() += noise * noise;
   return gaussian;
+}
+
+template <int D>
+void CellMoments<D>::throwTooMany() {
+  throw std::length_error("more than 2^33 - 1 points in one cell: take finer cells or fewer scans");
 }
 
 template struct CellMoments<2>;

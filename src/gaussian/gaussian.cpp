@@ -39,7 +39,8 @@ double klDivergence(const Gaussian<D>& p, const Gaussian<D>& q) {
   const double trace = whitened.squaredNorm();
   const double mahalanobis = whiten<D>(q_factor, q.mean - p.mean).squaredNorm();
   const double log_det_ratio = logDeterminantOfFactor<D>(q_factor) - logDeterminantOfFactor<D>(p_factor);
-  return 0.5 * (trace + mahalanobis - D + log_det_ratio);  // eq. (8)
+  const double divergence = 0.5 * (trace + mahalanobis - D + log_det_ratio);  // eq. (8)
+  return divergence < 0.0 ? 0.0 : divergence;                                 // rounding, where the two are the same
 }
 
 template <int D>

@@ -3,7 +3,6 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,19 +11,14 @@
 #include <string>
 #include <system_error>
 
+#include "io/open_files.h"
+
 namespace gaussmap {
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;  // write() takes no more than 2 GB
-
-/// Is the open file still the one with this name?
-bool hasName(int file, const fs::path& path) {
-  struct stat open_one, named_one;
-  return ::fstat(file, &open_one) == 0 && ::lstat(path.c_str(), &named_one) == 0 &&
-         open_one.st_dev == named_one.st_dev && open_one.st_ino == named_one.st_ino;
-}
 
 fs::path resolved(const fs::path& target) {
   std::error_code error;
@@ -64,14 +58,17 @@ bool AtomicFile::openLocked() {
     if (reason == EWOULDBLOCK) throw FileError(target_, "is being written by somebody else (" + part_.string() + ")");
     fail("cannot be locked", reason);
   }
-  if (hasName(file_, part_)) return true;
+  if (hasName(file_, part_.c_str())) {
+    entry_ = open_parts.add(part_, file_);
+    return true;
+  }
   closeFile();
   return false;
 }
 
 AtomicFile::~AtomicFile() {
   if (file_ < 0) return;
-  if (hasName(file_, part_)) ::unlink(part_.c_str());  // while still locked: nobody else's file can be hit
+  if (hasName(file_, part_.c_str())) ::unlink(part_.c_str());  // while still locked: nobody else's file can be hit
   closeFile();
 }
 
@@ -91,7 +88,8 @@ void AtomicFile::write(const void* data, std::size_t bytes) {
 
 void AtomicFile::commit() {
   if (file_ < 0) throw FileError(target_, "is finished already");
-  if (!hasName(file_, part_)) throw FileError(part_, "was removed or replaced by somebody else while it was written");
+  if (!hasName(file_, part_.c_str()))
+    throw FileError(part_, "was removed or replaced by somebody else while it was written");
   if (::fsync(file_) != 0) fail("cannot be brought to the disk", errno);
   if (std::rename(part_.c_str(), target_.c_str()) != 0) fail("cannot be renamed to its final name", errno);
   closeFile();
@@ -108,6 +106,8 @@ void AtomicFile::commit() {
 }
 
 void AtomicFile::closeFile() noexcept {
+  if (entry_) OpenFiles::remove(entry_);
+  entry_ = nullptr;
   ::close(file_);
   file_ = -1;
 }

@@ -85,7 +85,7 @@ void writeFinished(std::string& bytes, const Tile<D>& tile, const TileAddress<D>
 template <int D>
 Tile<D> readFinished(const char* bytes, std::size_t size, const FinishedContents& contents,
                      const TileAddress<D>& address, const MapOptions& options) {
-  const auto [cells, gaussians, has_labels, has_log_odds] = contents;
+  const std::uint64_t cells = contents.cells, gaussians = contents.gaussians;  // a binding cannot be captured
   if (gaussians > size / kNumbers<D> || cells > gaussians) throw std::runtime_error("shorter than its cells need");
   ColumnReader columns(bytes, size);
   Tile<D> tile;
@@ -119,7 +119,7 @@ Tile<D> readFinished(const char* bytes, std::size_t size, const FinishedContents
   tile.gaussians.reserve(gaussians);
   for (const QuantisedGaussian<D>& one : numbers) tile.gaussians.push_back(restore<D>(one, options.noise, side));
 
-  if (has_labels) {
+  if (contents.has_labels) {
     tile.labels.resize(gaussians);
     readNumbers(columns, gaussians, 0, [&](std::size_t i, std::int64_t number) {
       if (number < 0 || number > std::numeric_limits<std::uint32_t>::max())
@@ -127,7 +127,7 @@ Tile<D> readFinished(const char* bytes, std::size_t size, const FinishedContents
       tile.labels[i] = static_cast<std::uint32_t>(number);
     });
   }
-  if (has_log_odds) {
+  if (contents.has_log_odds) {
     tile.log_odds.resize(gaussians);
     readNumbers(columns, gaussians, 0,
                 [&](std::size_t i, std::int64_t number) { tile.log_odds[i] = restoreLogOdds(number); });

@@ -10,34 +10,18 @@
 #include <string>
 
 #include "gaussmap/io/map_pcd.h"
+#include "io/map_origin.h"
 #include "map/link_cells.h"
 
 namespace gaussmap {
 namespace {
 
-constexpr double kOriginStep = 1024.0;  // [m]
-constexpr double kRounding = 1e-6;      // what floats may have done to an eigenvalue, as a part of the largest
-
-/// Zero where floats resolve a thousandth of a finest cell everywhere in the map.
-Eigen::Vector3d recordOrigin(const GaussianMap<3>& map) {
-  const int coarsest = map.scales() - 1;
-  if (map.empty()) return Eigen::Vector3d::Zero();
-  const double half = 0.5 * map.grid().side(coarsest);
-  Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
-  for (const CellKey<3>& key : map.scale(coarsest).keys) {
-    const Eigen::Vector3d centre = map.grid().centre(key, coarsest);
-    low = low.cwiseMin((centre.array() - half).matrix());
-    high = high.cwiseMax((centre.array() + half).matrix());
-  }
-  const double farthest = std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
-  if (farthest * std::numeric_limits<float>::epsilon() <= 1e-3 * map.grid().side(0)) return Eigen::Vector3d::Zero();
-  return ((0.5 / kOriginStep) * (low + high)).array().round().matrix() * kOriginStep;
-}
+constexpr double kRounding = 1e-6;  // what floats may have done to an eigenvalue, as a part of the largest
 
 GaussianRecord toRecord(const GaussianMap<3>& map, std::size_t index, int scale, const Eigen::Vector3d& origin) {
   const CellKey<3>& key = map.scale(scale).keys[map.cellOf(index, scale)];
-  const Gaussian<3> gaussian = map.localGaussian(index, scale);
-  const Eigen::Vector3f mean = (gaussian.mean + (map.grid().centre(key, scale) - origin)).cast<float>();
+  const Gaussian<3> gaussian = gaussianAbout(origin, map, index, scale);
+  const Eigen::Vector3f mean = gaussian.mean.cast<float>();
   const Eigen::Matrix3f cov = gaussian.cov.cast<float>();
   return {{mean.x(), mean.y(), mean.z()},
           {cov(0, 0), cov(0, 1), cov(0, 2), cov(1, 1), cov(1, 2), cov(2, 2)},
@@ -120,7 +104,7 @@ GaussianRecords toRecords(const GaussianMap<3>& map, std::optional<int> scale) {
   if (scale && (*scale < 0 || *scale >= map.scales()))
     throw std::out_of_range("scale " + std::to_string(*scale) + ": the map has the scales 0 to " +
                             std::to_string(map.scales() - 1));
-  GaussianRecords all{{}, recordOrigin(map)};
+  GaussianRecords all{{}, mapOrigin(map)};
   for (int s = map.scales() - 1; s >= 0; --s)
     if (!scale || *scale == s)
       for (std::size_t i = 0; i < map.gaussianCount(s); ++i) all.records.push_back(toRecord(map, i, s, all.origin));

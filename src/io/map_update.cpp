@@ -3,17 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <map>
 #include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string>
-#include <system_error>
 #include <utility>
 
 #include "common/parallel.h"
 #include "gaussmap/io/atomic_file.h"
+#include "gaussmap/io/map_file.h"
 #include "io/assemble_map.h"
 #include "io/cut_tiles.h"
 #include "io/map_schema.h"
@@ -34,6 +35,11 @@ struct Header {
 
   Header(const std::filesystem::path& path, const Database& database) : entries(readEntries(database)) {
     options = readOptions<D>(path, entries);
+    if (entries.count("grows") + entries.count("occupancy") == 0) {  // of the first programs: only the tiles tell
+      const GaussianMap<D> map = loadMap<D>(path);
+      entries["grows"] = map.canGrow() ? "1" : "0";
+      entries["occupancy"] = map.hasOccupancy() ? "1" : "0";
+    }
     if (numberIn<int>(path, entries, "grows") != 1)
       throw FileError(path,
                       "takes no more scans: it is final, compressed or was learnt, so that the sums of its points are "
@@ -257,6 +263,18 @@ class Updater {
   std::vector<OldTiles<D>> old_;
 };
 
+/// Fills the part file with what the target holds. (std::filesystem::copy_file() has but "Input/output error" to say of
+/// a full disk.)
+void copyTarget(AtomicFile& file) {
+  std::ifstream source(file.target(), std::ios::binary);
+  std::vector<char> piece(std::size_t{1} << 20);
+  do {
+    source.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    file.write(piece.data(), static_cast<std::size_t>(source.gcount()));
+  } while (source);
+  if (!source.eof()) throw FileError(file.target(), "cannot be read");
+}
+
 }  // namespace
 
 template <int D>
@@ -266,10 +284,7 @@ MapUpdate updateMap(const std::filesystem::path& path, const MomentGrid<D>& adde
     throw std::invalid_argument("budget = " + std::to_string(*options.budget) + ": must be at least 1 Gaussian a cell");
   growingMapOptions<D>(path);  // complains before a part file is there
   AtomicFile file(path);       // locked from here on: what is read now, nobody else replaces
-  std::error_code error;
-  if (!std::filesystem::copy_file(file.target(), file.partPath(), std::filesystem::copy_options::overwrite_existing,
-                                  error))
-    throw FileError(path, "cannot be copied beside itself: " + error.message());
+  copyTarget(file);
   MapUpdate update;
   {
     Database database = openMap(file.partPath(), Database::Mode::ChangeCopy);

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "gaussmap/io/error.h"
+#include "io/open_files.h"
 
 namespace gaussmap {
 namespace {
@@ -41,7 +42,7 @@ class Descriptor {
 
 }  // namespace
 
-MappedFile::MappedFile(const std::filesystem::path& path) {
+MappedFile::MappedFile(const std::filesystem::path& path) : path_(path) {
   // Looked at before it is opened: opening alone may wake the other end of a pipe or move a device.
   struct stat status;
   if (stat(path.c_str(), &status) != 0) throwSystemError(path, "cannot be opened");
@@ -49,15 +50,30 @@ MappedFile::MappedFile(const std::filesystem::path& path) {
   const Descriptor descriptor(path);
   if (fstat(descriptor.number(), &status) != 0) throwSystemError(path, "cannot be read");
   requireRegular(path, status);
+  device_ = status.st_dev;
+  inode_ = status.st_ino;
   const auto size = static_cast<std::size_t>(status.st_size);
   if (size == 0) return;
   void* const address = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor.number(), 0);
   if (address == MAP_FAILED) throwSystemError(path, "cannot be read");
   bytes_ = {static_cast<const char*>(address), size};
+  entry_ = mapped_files.add(path, -1, bytes_);
 }
 
 MappedFile::~MappedFile() {
-  if (!bytes_.empty()) munmap(const_cast<char*>(bytes_.data()), bytes_.size());
+  if (bytes_.empty()) return;
+  OpenFiles::remove(entry_);
+  munmap(const_cast<char*>(bytes_.data()), bytes_.size());
+}
+
+void MappedFile::requireWhole() const {
+  // By its name, not by a descriptor kept open: there may be thousands of these. Another file of that name does no
+  // harm.
+  struct stat status;
+  if (stat(path_.c_str(), &status) != 0 || status.st_dev != device_ || status.st_ino != inode_) return;
+  if (static_cast<std::size_t>(status.st_size) < bytes_.size())
+    throw FileError(path_, "was cut off from " + std::to_string(bytes_.size()) + " to " +
+                               std::to_string(status.st_size) + " bytes while it was read");
 }
 
 }  // namespace gaussmap

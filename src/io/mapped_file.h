@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string_view>
 
 namespace gaussmap {
+
+struct OpenFile;
 
 /// A regular file's bytes, read-only, mapped for as long as the object lives.
 class MappedFile {
@@ -16,8 +19,14 @@ class MappedFile {
   MappedFile& operator=(const MappedFile&) = delete;
 
   std::string_view bytes() const { return bytes_; }
+  /// Throws FileError if the file was cut off since it was opened: some of what was read are then zeros. To be asked
+  /// when the last byte has been read. (Whole pages that are gone raise SIGBUS, see handleSignals().)
+  void requireWhole() const;
 
  private:
+  std::filesystem::path path_;
+  std::uint64_t device_ = 0, inode_ = 0;
+  OpenFile* entry_ = nullptr;  // what a signal handler sees
   std::string_view bytes_;
 };
 

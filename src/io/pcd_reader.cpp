@@ -162,11 +162,18 @@ PcdReader::~PcdReader() = default;
 PcdReader::PcdReader(PcdReader&&) noexcept = default;
 PcdReader& PcdReader::operator=(PcdReader&&) noexcept = default;
 
+void PcdReader::requireWhole() const {
+  body_->file.requireWhole();
+}
+
 void PcdReader::read(std::size_t first, PointBlock<3>& block) const {
   block.size = 0;
   if (!body_->loaded.load(std::memory_order_acquire)) {
     const std::lock_guard<std::mutex> lock(body_->mutex);
-    if (!body_->loaded.load(std::memory_order_relaxed)) body_->load(path_, header_);
+    if (!body_->loaded.load(std::memory_order_relaxed)) {
+      body_->load(path_, header_);
+      requireWhole();
+    }
     body_->loaded.store(true, std::memory_order_release);
   }
   if (first >= size()) return;
@@ -199,6 +206,7 @@ std::vector<std::vector<double>> PcdReader::columns(const std::vector<PcdColumn>
     for (const std::size_t i : order) columns.push_back({columnOf(i), isSingle(*fields[i])});
     parsePcdAscii(path_, header_, body_->data, columns);
     for (std::size_t i = 0; i < order.size(); ++i) result[order[i]] = std::move(columns[i].values);
+    requireWhole();
     return result;
   }
   std::unique_ptr<const PcdExpanded> all;
@@ -211,6 +219,7 @@ std::vector<std::vector<double>> PcdReader::columns(const std::vector<PcdColumn>
     widen(scalarsOf(field, wanted[i].element, all ? all->bytes() : body_->data.data(), stride), 0, size(),
           result[i].data());
   }
+  requireWhole();
   return result;
 }
 
@@ -247,6 +256,7 @@ std::vector<char> PcdReader::records() const {
         narrow(values[i], *header_.find(wanted[i].field), wanted[i].element, record, records.data());
     }
   }
+  requireWhole();
   return records;
 }
 

@@ -290,8 +290,11 @@ class BodyParser {
 TriangleMesh readPly(const std::filesystem::path& path) {
   const MappedFile file(path);
   const PlyHeader header = parsePlyHeader(path, file.bytes());
-  if (header.encoding == PlyEncoding::Ascii) return BodyParser<AsciiValues>(path, header, file.bytes()).parse();
-  return BodyParser<BinaryValues>(path, header, file.bytes()).parse();
+  TriangleMesh mesh = header.encoding == PlyEncoding::Ascii
+                          ? BodyParser<AsciiValues>(path, header, file.bytes()).parse()
+                          : BodyParser<BinaryValues>(path, header, file.bytes()).parse();
+  file.requireWhole();
+  return mesh;
 }
 
 }  // namespace gaussmap

@@ -1,40 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <stdexcept>
 #include <string>
 
 #include "gaussmap/io/atomic_file.h"
 #include "gaussmap/io/ply.h"
-
-static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "values are written as they are in memory");
+#include "io/write_buffer.h"
 
 namespace gaussmap {
 namespace {
-
-constexpr std::size_t kBytesAtOnce = std::size_t{1} << 20;
-
-/// Collects values and hands them over in large pieces.
-class Buffer {
- public:
-  explicit Buffer(AtomicFile& file) : file_(file) {}
-  template <typename T>
-  void add(T value) {
-    char raw[sizeof(T)];
-    std::memcpy(raw, &value, sizeof(T));
-    bytes_.append(raw, sizeof(T));
-    if (bytes_.size() >= kBytesAtOnce) flush();
-  }
-  void flush() {
-    file_.write(bytes_.data(), bytes_.size());
-    bytes_.clear();
-  }
-
- private:
-  AtomicFile& file_;
-  std::string bytes_;
-};
 
 void checkFloats(const TriangleMesh& mesh) {
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
@@ -57,7 +32,7 @@ void writePly(const std::filesystem::path& path, const TriangleMesh& mesh, PlyPr
 
   AtomicFile file(path);
   file.write(header.data(), header.size());
-  Buffer buffer(file);
+  WriteBuffer buffer(file);
   for (const Eigen::Vector3d& vertex : mesh.vertices) {
     for (int axis = 0; axis < 3; ++axis) {
       if (is_double) {

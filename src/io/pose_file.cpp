@@ -162,7 +162,9 @@ std::vector<Pose> posesByName(const PoseFile& file, const NameIndex& index,
 
 PoseFile readPoseFile(const std::filesystem::path& path) {
   const MappedFile file(path);
-  return PoseFileParser(path, file.bytes()).parse();
+  PoseFile poses = PoseFileParser(path, file.bytes()).parse();
+  file.requireWhole();
+  return poses;
 }
 
 std::vector<Pose> posesForScans(const PoseFile& file, const std::vector<std::filesystem::path>& scans) {

@@ -35,6 +35,7 @@ struct TextLines::PlainSource : Source {
 
   void read(std::string& piece, std::string&) override {
     piece = rest.substr(0, kPiece);
+    file->requireWhole();
     rest.remove_prefix(piece.size());
   }
 
@@ -54,6 +55,7 @@ struct TextLines::GzipSource : Source {
     piece.resize(kPiece);
     std::size_t filled = 0;
     while (filled == 0 && !ended) filled = expand(piece, damage);
+    file->requireWhole();
     piece.resize(filled);
   }
 

@@ -46,8 +46,8 @@ std::int64_t tileOrigin(const TileAddress<D>& address, std::size_t axis) {
 
 template <int D>
 void checkMoments(const CellMoments<D>& moments) {
-  constexpr std::int64_t kMostPoints = (std::int64_t{1} << 33) - 1;
-  if (moments.count <= 0 || moments.count > kMostPoints) throw std::runtime_error("a cell with an impossible count");
+  if (moments.count <= 0 || moments.count > CellMoments<D>::kMostPoints)
+    throw std::runtime_error("a cell with an impossible count");
   for (std::int64_t sum : moments.sum)
     if (std::abs(static_cast<double>(sum)) > 0x1.0p15 * static_cast<double>(moments.count))
       throw std::runtime_error("a cell whose points lie outside it");

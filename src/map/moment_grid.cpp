@@ -127,6 +127,20 @@ template <int D>
   throwOutsideLattice(point, D, resolution);
 }
 
+/// Throws std::length_error if a cell that the block falls to would hold too many points.
+template <int D>
+void requireRoom(const MomentGrid<D>& grid, const LatticeBlock<D>& block, const std::uint32_t* starts,
+                 std::size_t runs) {
+  for (std::size_t run = 0; run < runs; ++run) {
+    const CellKey<D> key = block.key(starts[run]);
+    const CellMoments<D>* known = grid.find(key);
+    if (known == nullptr || known->count <= CellMoments<D>::kMostPoints - std::int64_t{kBlock}) continue;
+    std::int64_t more = 0;
+    for (std::size_t i = 0; i < block.size; ++i) more += same<D>(block.key(i), key);
+    known->requireRoom(more);
+  }
+}
+
 }  // namespace
 
 template <int D>
@@ -156,6 +170,7 @@ std::size_t MomentGrid<D>::add(const PointBlock<D>& block) {
     runs += i == 0 || !lattice.sameCell(i, i - 1);
   }
   starts[runs] = static_cast<std::uint32_t>(lattice.size);
+  if (point_count_ > CellMoments<D>::kMostPoints - std::int64_t{kBlock}) requireRoom(*this, lattice, starts, runs);
   std::uint32_t candidates[kBlock];
   for (std::size_t run = 0; run < runs; ++run) {
     const std::uint32_t hash = lattice.hash[starts[run]];

@@ -111,6 +111,7 @@ void accumulate(const std::vector<ScanSource>& scans, const AccumulateOptions& o
       }
       full(partial);
     });
+    reader.requireWhole();
     if (!progress) return;
     const std::lock_guard lock(progress_mutex);
     ++done.scans_done;
@@ -176,6 +177,7 @@ std::vector<Vector<3>> readScans(const std::vector<ScanSource>& scans, const Acc
       for (std::size_t i = 0; i < block.size; ++i)
         points.emplace_back(block.coordinate[0][i], block.coordinate[1][i], block.coordinate[2][i]);
     });
+    reader.requireWhole();
   }
   return points;
 }

@@ -18,8 +18,6 @@
 namespace gaussmap {
 namespace {
 
-constexpr std::int64_t kMostPoints = (std::int64_t{1} << 33) - 1;  // of a cell, see CellMoments
-
 /// A cell of the merged map: where it stands in each of the two.
 struct CellPair {
   std::optional<std::size_t> a, b;
@@ -125,11 +123,15 @@ class Merger {
     for (const CellPair& pair : pairs(0)) {
       finest.keys.push_back(keyOf(pair, 0));
       CellMoments<D> moments;
-      if (pair.a) moments += a_.scale(0).moments[*pair.a];
-      if (pair.b) moments += b_.scale(0).moments[*pair.b];
-      if (moments.count > kMostPoints)
-        throw std::invalid_argument("cell " + toString<D>(finest.keys.back()) + " would hold " +
-                                    std::to_string(moments.count) + " points, more than 2^33 - 1: take finer cells");
+      if (pair.a) moments = a_.scale(0).moments[*pair.a];
+      if (pair.b) {
+        const CellMoments<D>& more = b_.scale(0).moments[*pair.b];
+        if (more.count > CellMoments<D>::kMostPoints - moments.count)
+          throw std::invalid_argument("cell " + toString<D>(finest.keys.back()) + " would hold " +
+                                      std::to_string(moments.count + more.count) +
+                                      " points, more than 2^33 - 1: take finer cells");
+        moments += more;
+      }
       finest.moments.push_back(moments);
       const bool is_more_b =
           pair.b && (!pair.a || b_.scale(0).moments[*pair.b].count > a_.scale(0).moments[*pair.a].count);

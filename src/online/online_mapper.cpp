@@ -108,9 +108,8 @@ std::optional<RangeImage> OnlineMapper<D>::State::imageOf(const Scan& scan, std:
 }
 
 template <int D>
-OnlineMapper<D>::OnlineMapper(const OnlineOptions& options, Removed removed) {
-  state_ = std::make_unique<State>(options, std::move(removed));
-}
+OnlineMapper<D>::OnlineMapper(const OnlineOptions& options, Removed removed)
+    : state_(std::make_unique<State>(options, std::move(removed))) {}
 
 template <int D>
 OnlineMapper<D>::~OnlineMapper() = default;

@@ -28,18 +28,14 @@ struct NormalEquations {
   NormalEquations& operator+=(const NormalEquations& other);
 };
 
-/// d^2 and its derivatives for a mean of the scan (moved, about the origin; `arm` = the same about the sensor) with a
-/// covariance (moved), against one Gaussian of the map widened by blur^2 [m^2].
-struct Residual {
-  Eigen::Matrix3d information;  ///< A of d^2 = r' A r
-  Eigen::Vector3d difference;   ///< r = mean of the scan - mean of the map [m]
-  double squared = 0.0;         ///< d^2
-};
-Residual residual(const Vector<3>& mean, const Matrix<3>& cov, const MapGaussian& target, double blur_squared);
+/// Adds d^2 = sum over the axes a of a Gaussian of the map, tells_a (a' r)^2 / (variance_a + blur^2 + a' R S R' a), and
+/// its derivatives; r = R m + t - mean of the map, m and S of the scan [m, about the sensor]; blur^2 [m^2].
+void addResidual(const Gaussian<3>& gaussian, const Pose& pose, const MapGaussian& target, double blur_squared,
+                 double kernel, NormalEquations& sums);
 
 /// The normal equations of all Gaussians of a scan at a pose (about the origin of `near`).
-NormalEquations linearise(const std::vector<Gaussian<3>>& scan, const Pose& pose, MapNeighbours& near, double blur,
-                          double kernel, int threads);
+NormalEquations linearise(const std::vector<Gaussian<3>>& scan, const Pose& pose, MapNeighbours& near, double kernel,
+                          int threads);
 
 /// The pose moved by such a six-vector.
 Pose moved(const Pose& pose, const NormalEquations::Vector6& by);

@@ -40,10 +40,11 @@ class AppTest : public testing::Test {
   static Json infoOf(const std::string& map) { return Json::parse(succeed({"info", map, "--json"})); }
 
   /// Fails with this code and one line on stderr that holds `word`; prints nothing else and makes no file.
-  void expectFailure(int code, const std::string& word, const std::vector<std::string>& arguments) const {
+  void expectFailure(int code, const std::string& word, const std::vector<std::string>& arguments,
+                     const std::function<void()>& in_child = {}) const {
     SCOPED_TRACE(testing::PrintToString(arguments));
     const std::vector<std::string> before = ownFiles();
-    const Outcome outcome = runApp(arguments);
+    const Outcome outcome = runApp(arguments, "", in_child);
     EXPECT_EQ(outcome.code, code);
     EXPECT_EQ(outcome.out, "");
     EXPECT_EQ(outcome.err.find("gaussmap: "), 0u) << outcome.err;
@@ -55,8 +56,9 @@ class AppTest : public testing::Test {
   void expectUsageError(const std::string& word, const std::vector<std::string>& arguments) const {
     expectFailure(2, word, arguments);
   }
-  void expectDataError(const std::string& word, const std::vector<std::string>& arguments) const {
-    expectFailure(1, word, arguments);
+  void expectDataError(const std::string& word, const std::vector<std::string>& arguments,
+                       const std::function<void()>& in_child = {}) const {
+    expectFailure(1, word, arguments, in_child);
   }
 
   TemporaryDirectory directory_;

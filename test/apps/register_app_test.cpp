@@ -52,6 +52,19 @@ TEST_F(RegisterApp, TakesAGuess) {
   EXPECT_EQ(said["converged"], true);
 }
 
+TEST_F(RegisterApp, MovesAMapOntoAMap) {
+  const std::string moved = own("moved.gmap");
+  succeed({"transform", world("map.gmap"), "-o", moved, "--transform", "0.6 -0.4 0.1 0 0 0.0436194 0.9990482"});
+  // The way back: the inverse of what moved it, 5 degrees about z.
+  const Json said = Json::parse(succeed({"register", moved, world("map.gmap"), "--json"})).at(0);
+  const double cosine = std::cos(5.0 * std::acos(-1.0) / 180.0), sine = std::sin(5.0 * std::acos(-1.0) / 180.0);
+  EXPECT_NEAR(said["translation"][0].get<double>(), -(cosine * 0.6 + sine * -0.4), 0.03);
+  EXPECT_NEAR(said["translation"][1].get<double>(), -(-sine * 0.6 + cosine * -0.4), 0.03);
+  EXPECT_NEAR(said["translation"][2].get<double>(), -0.1, 0.03);
+  EXPECT_NEAR(said["quaternion_xyzw"][2].get<double>(), -0.0436194, 0.002);
+  EXPECT_GT(said["fitness"], 0.8);
+}
+
 TEST_F(RegisterApp, SaysWhatIsWrong) {
   expectUsageError("inputs", {"register"});
   expectUsageError("inputs", {"register", scan(0)});

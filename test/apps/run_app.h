@@ -2,55 +2,79 @@
 #pragma once
 
 #include <fcntl.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <filesystem>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "io/file_contents.h"
 
-extern char** environ;
-
 namespace gaussmap::test {
 
 /// What a program did.
 struct Outcome {
-  int code = -1;  ///< exit code, -1 if a signal ended it
+  int code = -1;   ///< exit code, -1 if a signal ended it
+  int signal = 0;  ///< that ended it
   std::string out, err;
 };
 
-/// Runs gaussmap as a shell would; stdout and stderr go through files, so that no full pipe can stop it.
-inline Outcome runApp(const std::vector<std::string>& arguments, const std::string& out_path = "") {
-  std::string folder = (std::filesystem::temp_directory_path() / "gaussmap-run-XXXXXX").string();
-  if (::mkdtemp(folder.data()) == nullptr) throw std::runtime_error("no temporary directory");
-  const std::string out = out_path.empty() ? folder + "/out" : out_path, err = folder + "/err";
+/// gaussmap at work; stdout and stderr go through files, so that no full pipe can stop it.
+class StartedApp {
+ public:
+  /// `in_child` runs in the new process just before the program; stdout goes to `out_path`, if there is one.
+  explicit StartedApp(const std::vector<std::string>& arguments, const std::function<void()>& in_child = {},
+                      const std::string& out_path = "")
+      : folder_((std::filesystem::temp_directory_path() / "gaussmap-run-XXXXXX").string()) {
+    if (::mkdtemp(folder_.data()) == nullptr) throw std::runtime_error("no temporary directory");
+    const std::string out = out_path.empty() ? folder_ + "/out" : out_path, err = folder_ + "/err";
+    std::vector<std::string> words = {GAUSSMAP_APP};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    child_ = ::fork();
+    if (child_ < 0) throw std::runtime_error("cannot start " GAUSSMAP_APP);
+    if (child_ > 0) return;
+    const auto put = [](int file, int at) {
+      if (file < 0 || ::dup2(file, at) < 0) ::_exit(126);
+      ::close(file);
+    };
+    put(::open("/dev/null", O_RDONLY), STDIN_FILENO);
+    put(::open(out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
+    put(::open(err.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
+    if (in_child) in_child();
+    ::execv(GAUSSMAP_APP, argv.data());
+    ::_exit(kNotStarted);
+  }
+  ~StartedApp() { std::filesystem::remove_all(folder_); }
+  StartedApp(const StartedApp&) = delete;
+  StartedApp& operator=(const StartedApp&) = delete;
 
-  std::vector<std::string> words = {GAUSSMAP_APP};
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
+  static constexpr int kNotStarted = 127;
+  pid_t id() const { return child_; }
 
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), O_WRONLY | O_CREAT, 0600);
-  posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), O_WRONLY | O_CREAT, 0600);
-  pid_t child = 0;
-  const int failed = ::posix_spawn(&child, GAUSSMAP_APP, &actions, nullptr, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failed != 0) throw std::runtime_error("cannot start " GAUSSMAP_APP);
-  int status = 0;
-  if (::waitpid(child, &status, 0) != child) throw std::runtime_error("lost " GAUSSMAP_APP);
+  /// Waits for its end.
+  Outcome outcome() const {
+    int status = 0;
+    if (::waitpid(child_, &status, 0) != child_) throw std::runtime_error("lost " GAUSSMAP_APP);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, WIFSIGNALED(status) ? WTERMSIG(status) : 0,
+            std::filesystem::exists(folder_ + "/out") ? contentsOf(folder_ + "/out") : "",
+            contentsOf(folder_ + "/err")};
+  }
 
-  Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, out_path.empty() ? contentsOf(out) : "",
-                  contentsOf(err)};
-  std::filesystem::remove_all(folder);
-  return outcome;
+ private:
+  std::string folder_;
+  pid_t child_ = 0;
+};
+
+/// Runs gaussmap as a shell would.
+inline Outcome runApp(const std::vector<std::string>& arguments, const std::string& out_path = "",
+                      const std::function<void()>& in_child = {}) {
+  return StartedApp(arguments, in_child, out_path).outcome();
 }
 
 }  // namespace gaussmap::test

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap_refinement_speed [--scans 0] [--runs 5]: seconds of agglomerative refinement on the simulated street, one
-// thread: the coarsest scale, and a middle scale of about 250,000 finest Gaussians; the clustering alone beside scalar
-// code with logarithms on the same data. Shortest of the runs, which take turns.
+// gaussmap_refinement_speed [--scans 0] [--runs 5] [--json FILE]: seconds of agglomerative refinement on the simulated
+// street, one thread: the coarsest scale, and a middle scale of about 250,000 finest Gaussians; the clustering alone
+// beside scalar code with logarithms on the same data. Shortest of the runs, which take turns.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -16,6 +16,7 @@
 #include "mapping/blur.h"
 #include "refinement_data.h"
 #include "scalar_agglomerate.h"
+#include "table.h"
 
 namespace gaussmap::refinement {
 namespace {
@@ -114,13 +115,16 @@ GaussianMap<3> quarterMillion(const std::vector<Vector<3>>& points, std::size_t 
   return map;
 }
 
-void print(const char* scale, std::size_t cells, std::size_t data, double wanted, const Times& times) {
-  const double ratio = times.scalar / times.clustering;
-  std::printf("| %s | %zu | %zu | %.3f s | %g s | %.3f s | %.3f s | %.1f | %s |\n", scale, cells, data, times.whole,
-              wanted, times.clustering, times.scalar, ratio, times.whole < wanted || ratio >= 15.0 ? "met" : "MISSED");
+/// The clustering beside the scalar code, and the refinement as a whole.
+void report(const char* scale, std::size_t cells, std::size_t data, double wanted, const Times& times,
+            benchmark::Table& table) {
+  const std::string input =
+      std::string(scale) + ", " + std::to_string(data) + " Gaussians in " + std::to_string(cells) + " cells";
+  table.add(benchmark::Row{"clustering", input, 1, times.clustering, 0.0, "scalar code", times.scalar, 0.0, 15.0});
+  table.add(benchmark::Figure{"refinement", input, "whole", "s", times.whole, wanted});
 }
 
-void run(int scans, int runs) {
+void run(int scans, int runs, const std::string& json) {
   SimulationOptions street;
   street.scans = scans;
   const std::vector<Vector<3>> points = simulatedDrive(makeSimulation(WorldName::Street, street), 1).points;
@@ -144,13 +148,12 @@ void run(int scans, int runs) {
   }
   coarsest_times.whole = both - below;
 
-  std::printf(
-      "| scale | cells | finer Gaussians | refined in | wanted below | clustering | scalar | scalar / ours |  |\n");
-  std::printf("|---|---|---|---|---|---|---|---|---|\n");
   std::size_t data = 0;
   for (const CellData& cell : coarsest_data) data += cell.gaussians.size();
-  print("coarsest, 10 m", one.cellCount(2), data, 0.15, coarsest_times);
-  print("middle, 1 m", middle.cellCount(1), middle.cellCount(0), 1.5, middle_times);
+  benchmark::Table table;
+  report("coarsest, 10 m", one.cellCount(2), data, 0.15, coarsest_times, table);
+  report("middle, 1 m", middle.cellCount(1), middle.cellCount(0), 1.5, middle_times, table);
+  if (!json.empty()) benchmark::writeJson(json, table);
 }
 
 }  // namespace
@@ -158,11 +161,13 @@ void run(int scans, int runs) {
 
 int main(int argc, char** argv) try {
   int scans = 0, runs = 5;
+  std::string json;
   CLI::App app("Seconds of agglomerative refinement");
   app.add_option("--scans", scans, "of the street; 0: as many as it has")->check(CLI::Range(0, 1000));
   app.add_option("--runs", runs, "the shortest counts")->check(CLI::Range(1, 1000))->capture_default_str();
+  app.add_option("--json", json, "write the figures for machines");
   CLI11_PARSE(app, argc, argv);
-  gaussmap::refinement::run(scans, runs);
+  gaussmap::refinement::run(scans, runs, json);
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "gaussmap_refinement_speed: %s\n", error.what());

@@ -1,58 +1,29 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Measures everything and rewrites test/benchmark/RESULTS.md. Needs python3, and pcl-tools for the whole commands.
-# Usage: test/benchmark/results.sh BUILD DATA   (BUILD configured with -DGAUSSMAP_BUILD_BENCHMARKS=ON)
+# Measures everything, rewrites test/benchmark/RESULTS.md and the table of the README. Needs python3, and pcl-tools for
+# the whole commands.
+# Usage: test/benchmark/results.sh BUILD DATA [speed]
+#   (BUILD configured with -DGAUSSMAP_BUILD_BENCHMARKS=ON; speed: only the table beside the peers)
 set -euo pipefail
-(($# == 2)) || { sed -n '3,4p' "$0" >&2; exit 2; }
+(($# == 2)) || [[ $# == 3 && $3 == speed ]] || { sed -n '3,6p' "$0" >&2; exit 2; }
 build=$1 data=$2
 here=$(dirname "$0")
 new=$(mktemp)
 trap 'rm -f "$new"' EXIT
-{
+accuracy() {
   cat <<'TEXT'
 # Measured
 
 Written by `test/benchmark/results.sh BUILD DATA`; no figure is typed by hand. Times are of a machine with two cores;
 compare ratios, not seconds.
 
-## Building the finest scale
+## Beside its peers
 
-`gaussmap_benchmark --scans DATA/kitti_6scans --benchmark_repetitions=5`: one thread, 746 k points of six lidar scans,
-and 5 M simulated points in packet order. MomentGrid = the exact sums; Gaussians = sums, key order and the
-eigen-decomposition of every cell, which `pcl::VoxelGridCovariance` makes too. Numbers are the peer's CPU time over ours.
+`gaussmap_benchmark --table --growth --data DATA`: everything in the same run, every measurement in a process of its own;
+median of three runs (one with more than ten million points). The README has the shorter half of this table.
 
-```
-TEXT
-  "$build/test/benchmark/gaussmap_benchmark" --scans "$data/kitti_6scans" --benchmark_repetitions=5 \
-    --benchmark_report_aggregates_only=true --benchmark_color=false 2>/dev/null | grep -E 'Times of|input|scans/[0-9.]+m |street/[0-9.]+m '
-  cat <<'TEXT'
-```
-
-## Whole command
-
-`test/benchmark/whole_command.sh BUILD`: 5 M points, one binary PCD; pcd2map makes three scales and a map file.
-
-TEXT
-  "$here/whole_command.sh" "$build"
-  cat <<'TEXT'
-
-## Hausdorff distance of two clouds
-
-`test/benchmark/hausdorff.sh BUILD`: two binary PCD files of a million points each; whole commands on all processors
-(PCL uses one). The script stops if the maxima differ by more than PCL's floats and printed decimals.
-
-TEXT
-  "$here/hausdorff.sh" "$build"
-  cat <<'TEXT'
-
-## Refinement: time
-
-`gaussmap_refinement_speed`: the simulated street to 3.4 Gaussians per cell, one thread, shortest of five runs. Clustering
-alone stands beside scalar code with Eigen objects, logarithms and a cheapest partner for each cluster.
-
-TEXT
-  "$build/test/benchmark/gaussmap_refinement_speed"
-  cat <<'TEXT'
+<!-- benchmark: begin -->
+<!-- benchmark: end -->
 
 ## Refinement: accuracy at equal numbers of Gaussians
 
@@ -75,5 +46,11 @@ of weights is the number of accepted points at every scale (the script stops if 
 
 TEXT
   "$here/datasets.sh" "$build/apps/gaussmap" "$build/test/benchmark/gaussmap_reference" "$data"
-} >"$new"
-cp "$new" "$here/RESULTS.md"
+}
+if (($# == 2)); then
+  accuracy >"$new"
+  cp "$new" "$here/RESULTS.md"
+fi
+"$build/test/benchmark/gaussmap_benchmark" --table --growth --data "$data" --json "$new"
+"$here/readme_table.py" "$new" "$here/RESULTS.md"
+"$here/readme_table.py" "$new" "$here/../../README.md" "20.0 M" "0.1 m" compressed

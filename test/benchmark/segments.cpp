@@ -14,6 +14,7 @@
 #include "gaussmap/segments/segment_fitter.h"
 #include "segment_baselines.h"
 #include "segment_data.h"
+#include "table.h"
 
 namespace gaussmap::benchmark {
 namespace {
@@ -116,7 +117,7 @@ void plan(double position_noise, int seeds) {
 }
 
 /// Beams a second: scan by scan, and with the map at the end.
-void speed(const Scans& scans) {
+void speed(const char* name, const Scans& scans, Table& table) {
   std::size_t beams = 0;
   for (const LaserScan& scan : scans)
     for (std::size_t beam = 0; beam < scan.ranges.size(); ++beam) beams += scan.returned(beam);
@@ -145,6 +146,9 @@ void speed(const Scans& scans) {
     }
     std::printf("| %s | %.2f | %.2f | %.2f | %.1f |\n", kind == EvidencePolicy::MomentCells ? "moments" : "particles",
                 rate(adding), rate(all), baseline / adding, static_cast<double>(memory) / 1e6);
+    if (kind == EvidencePolicy::MomentCells)
+      table.rows.push_back(Row{"segments", std::string(name) + ", " + std::to_string(beams) + " beams", 1, adding,
+                               static_cast<double>(memory) / 1e6, "iterative end-point fit", baseline, 0.0, 0.0});
   }
   std::printf("| iterative end-point fit | | %.2f | 1 | |\n\n", rate(baseline));
 }
@@ -250,14 +254,17 @@ void viewpoint(const char* name, const Scans& scans) {
   std::printf("\n");
 }
 
-void run(const std::string& data, int seeds) {
+void run(const std::string& data, int seeds, bool only_speed, Table& table) {
+  if (data.empty()) speed("floor plan", scanPlan(0.01, 0.0, 1), table);
+  if (only_speed && data.empty()) return;
+  if (only_speed) return speed("Intel lab", readLogIn(std::filesystem::path(data) / "carmen_intel"), table);
   for (const double noise : {0.0, kPositionNoise}) plan(noise, seeds);
   if (data.empty()) return;
   const Scans intel = readLogIn(std::filesystem::path(data) / "carmen_intel");
   const Scans csail = readLogIn(std::filesystem::path(data) / "carmen_csail");
   std::printf("carmen_intel\n\n");
   holdOut(intel);
-  speed(intel);
+  speed("Intel lab", intel, table);
   study("carmen_intel", intel, seeds);
   study("carmen_csail", csail, seeds);
   viewpoint("carmen_intel", intel);
@@ -270,12 +277,18 @@ void run(const std::string& data, int seeds) {
 int main(int argc, char** argv) {
   CLI::App app("Maps of line segments: accuracy, speed, and the paper's study");
   std::string data;
+  std::string json;
   int seeds = 3;
+  bool only_speed = false;
   app.add_option("--data", data, "directory with carmen_intel and carmen_csail")->check(CLI::ExistingDirectory);
   app.add_option("--seeds", seeds, "of the simulated noise and of particles")->check(CLI::Range(1, 1000));
+  app.add_flag("--only-speed", only_speed, "beams a second and nothing else");
+  app.add_option("--json", json, "write the speed for machines");
   CLI11_PARSE(app, argc, argv);
   try {
-    gaussmap::benchmark::run(data, seeds);
+    gaussmap::benchmark::Table table;
+    gaussmap::benchmark::run(data, seeds, only_speed, table);
+    if (!json.empty()) gaussmap::benchmark::writeJson(json, table);
     return 0;
   } catch (const std::exception& error) {
     std::cerr << "gaussmap_segments_benchmark: " << error.what() << '\n';

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "gaussmap/gaussian/gaussian.h"
 #include "gaussmap/io/pose.h"
 #include "gaussmap/simulation/lidar.h"
 #include "gaussmap/simulation/scene.h"
@@ -13,8 +14,8 @@ namespace gaussmap::benchmark_input {
 
 /// A straight street, 200 m long: ground, two building fronts, poles every 10 m, seen by a 64-ring lidar every 2 m.
 /// Points in the map frame, in packet order (all rings of a column, then the next column). The drive begins again after
-/// 80 scans, with other noise.
-inline std::vector<Vector<3>> streetPoints(std::size_t count, std::uint64_t first_scan = 0) {
+/// 80 scans, with other noise. `threads` = 0: all; never shows in the points.
+inline std::vector<Vector<3>> streetPoints(std::size_t count, std::uint64_t first_scan = 0, int threads = 0) {
   Scene scene;
   scene.rectangles.push_back({{-100, -15, 0}, {200, 0, 0}, {0, 30, 0}});
   for (const double y : {-15.0, 15.0}) scene.rectangles.push_back({{-100, y, 0}, {200, 0, 0}, {0, 0, 12}});
@@ -28,6 +29,7 @@ inline std::vector<Vector<3>> streetPoints(std::size_t count, std::uint64_t firs
   LidarOptions lidar;
   lidar.rings = 64;
   lidar.max_range = 100.0;
+  lidar.threads = threads;
   std::vector<Vector<3>> points;
   points.reserve(count + std::size_t{64} * 1800);
   for (std::uint64_t step = first_scan; points.size() < count; ++step) {

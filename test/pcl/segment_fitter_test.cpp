@@ -146,5 +146,47 @@ TEST(PointCloudSegmentFitter, TakesASliceOfASpace) {
   EXPECT_FALSE(fitter.map().segments.empty());
 }
 
+TEST(PointCloudSegmentFitter, TellsWhichPointsLieOnWhichSegment) {
+  const std::vector<SimulatedScan> scans = planScans(6);
+  PointCloudSegmentFitter<pcl::PointXYZ> fitter;
+  for (const SimulatedScan& scan : scans) {
+    fitter.setInputCloud(cloudOf<pcl::PointXYZ>(scan));
+    fitter.fit();
+  }
+  const auto cloud = cloudOf<pcl::PointXYZ>(scans.back());
+  fitter.setInputCloud(cloud);
+  std::vector<pcl::PointIndices> segments;
+  fitter.segmentIndices(segments);
+  const SegmentMap map = fitter.map();
+  ASSERT_EQ(segments.size(), map.segments.size());
+  const Eigen::Quaterniond rotation = cloud->sensor_orientation_.cast<double>();
+  std::vector<int> owner(cloud->size(), -1);
+  for (std::size_t s = 0; s < segments.size(); ++s)
+    for (const auto i : segments[s].indices) owner[std::size_t(i)] = int(s);
+  std::size_t owned = 0, returned = 0;
+  for (std::size_t i = 0; i < cloud->size(); ++i) {
+    if (!std::isfinite((*cloud)[i].x)) {
+      EXPECT_EQ(owner[i], -1);
+      continue;
+    }
+    ++returned;
+    const Eigen::Vector3d p =
+        rotation * (*cloud)[i].getVector3fMap().cast<double>() + cloud->sensor_origin_.head<3>().cast<double>();
+    double least = 0.1;
+    int nearest = -1;
+    for (std::size_t s = 0; s < map.segments.size(); ++s)
+      if (map.segments[s].distance({p.x(), p.y()}) < least) {
+        least = map.segments[s].distance({p.x(), p.y()});
+        nearest = int(s);
+      }
+    EXPECT_EQ(owner[i], nearest);
+    owned += owner[i] >= 0;
+  }
+  EXPECT_GT(owned, returned * 9 / 10);
+  PointCloudSegmentFitter<pcl::PointXYZ> none;
+  none.segmentIndices(segments);
+  EXPECT_TRUE(segments.empty());
+}
+
 }  // namespace
 }  // namespace gaussmap

@@ -10,11 +10,10 @@
 #include <stdexcept>
 
 #include "gaussmap/gaussian/random.h"
+#include "gaussmap/io/map_file.h"
 #include "gaussmap/mapping/build.h"
 #include "gaussmap/mapping/refine.h"
 #include "gaussmap/simulation/simulation.h"
-#include "registration/normal_equations.h"
-#include "registration/scan_gaussians.h"
 
 namespace gaussmap {
 namespace {
@@ -72,46 +71,6 @@ std::vector<Vector<3>> corridor(bool end, std::uint64_t seed) {
   return points;
 }
 
-TEST(NormalEquations, HaveTheDerivativesThatDifferencesGive) {
-  const GaussianMapOctree map =
-      build<3>({{0.4, 0.5, 0.55}, {0.5, 0.52, 0.4}, {0.6, 0.45, 0.5}, {0.45, 0.6, 0.5}}, {1.0, 2, 1, 0.05});
-  ASSERT_EQ(map.gaussianCount(0), 1u);  // one to meet: the nearest is always the same
-  std::vector<Gaussian<3>> scan;
-  for (const Vector<3>& mean : {Vector<3>(0.3, 0.1, 0.5), Vector<3>(0.6, 0.3, 0.2), Vector<3>(0.2, 0.7, 0.9)})
-    scan.push_back({mean, 1e-30 * Matrix<3>::Identity(), 1.0});
-  const Pose pose = posed({0.1, -0.05, 0.02}, 7.0, {1, 2, 3});
-  const auto at = [&](const Pose& where) {
-    MapNeighbours near(map, 0, Vector<3>::Zero());
-    return linearise(scan, where, near, 0.2, 2.0, 1);
-  };
-  const NormalEquations here = at(pose);
-  ASSERT_EQ(here.met, 3u);
-  constexpr double kStep = 1e-6;
-  for (int axis = 0; axis < 6; ++axis) {
-    const NormalEquations::Vector6 step = kStep * NormalEquations::Vector6::Unit(axis);
-    const double slope = (at(moved(pose, step)).cost - at(moved(pose, -step)).cost) / (2.0 * kStep);
-    EXPECT_NEAR(2.0 * here.gradient[axis], slope, 1e-6 * (1.0 + std::abs(slope))) << axis;
-  }
-}
-
-TEST(NormalEquations, KnowNothingAlongAnAxisThatFillsItsCell) {
-  MapGaussian wall{{0, 0, 0}, Matrix<3>::Identity(), {0.0004, 0.0833, 0.0833}, {1.0, 0.0, 0.0}};
-  const Residual r = residual({0.04, 0.3, -0.2}, Matrix<3>::Zero(), wall, 0.0012);
-  EXPECT_NEAR(r.squared, 0.04 * 0.04 / 0.0016, 1e-12);  // across the wall only
-  EXPECT_NEAR(r.information(0, 0), 1.0 / 0.0016, 1e-9);
-  EXPECT_EQ(r.information(1, 1), 0.0);
-}
-
-TEST(Registration, TakesFromTheWholeScanWhenItIsLarge) {
-  std::vector<Eigen::Vector3d> points;
-  for (int i = 0; i < 1000; ++i) points.emplace_back(0.25 + 0.5 * i, 0.25, 0.25);
-  RegistrationOptions few;
-  few.most_gaussians = 10;
-  const std::vector<Gaussian<3>> taken = gaussiansOf(points, 0.5, few);
-  ASSERT_EQ(taken.size(), 10u);
-  for (std::size_t i = 0; i < 10; ++i) EXPECT_NEAR(taken[i].mean.x(), 0.25 + 50.0 * double(i), 1e-3);
-}
-
 TEST(Registration, FindsThePoseOfTheScanThatTheMapIsMadeOf) {
   const Hall hall(1);
   const Pose truth = hall.scans[0].pose;
@@ -148,9 +107,40 @@ TEST(Registration, MovesOneMapOntoAnother) {
   for (const Vector<3>& point : hall.inMap(1))
     elsewhere.push_back(offset.rotation.conjugate() * (point - offset.translation));
   const GaussianMapOctree other = build<3>(elsewhere, {0.2, 3, 3, 0.0});
-  const RegistrationResult result = registerMap(other, hall.map);
-  EXPECT_LT(apart(result.pose, offset), 0.03);
-  EXPECT_LT(turned(result.pose, offset), 0.3);
+  for (const GaussianMapOctree& source : {other, refine<3>(other), finish<3>(other)}) {
+    const RegistrationResult result = registerMap(source, hall.map);
+    EXPECT_TRUE(result.converged);
+    EXPECT_FALSE(result.degenerate);
+    EXPECT_GT(result.fitness, 0.5);
+    EXPECT_LT(apart(result.pose, offset), 0.03);
+    EXPECT_LT(turned(result.pose, offset), 0.2);
+  }
+}
+
+TEST(Registration, OfAMapIsThatOfTheScanThatItIsMadeOf) {
+  const Hall hall(2);
+  const GaussianMapOctree source = build<3>(hall.scans[1].points, {0.2, 4, 2, 0.0});
+  const RegistrationResult by_map = registerMap(source, hall.map, hall.scans[0].pose);
+  const RegistrationResult by_scan = registerScan(hall.scans[1].points, hall.map, hall.scans[0].pose);
+  EXPECT_EQ(by_map.pose.translation, by_scan.pose.translation);
+  EXPECT_EQ(by_map.covariance, by_scan.covariance);
+}
+
+TEST(Registration, OfAMapOfAnotherResolutionTakesTheScaleThatFits) {
+  const Hall hall(2);
+  const GaussianMapOctree source = build<3>(hall.scans[1].points, {0.05, 2, 6, 0.0});
+  const RegistrationResult result = registerMap(source, hall.map, hall.scans[0].pose);
+  EXPECT_LT(apart(result.pose, hall.scans[1].pose), 0.02);
+  EXPECT_GT(result.fitness, 0.5);
+}
+
+TEST(Registration, StaysWithTheGuessWhenTheOtherMapIsEmpty) {
+  const Hall hall(1);
+  const Pose guess = posed({1, 2, 3}, 10.0, {0, 0, 1});
+  const RegistrationResult result = registerMap(GaussianMapOctree(), hall.map, guess);
+  EXPECT_LT(apart(result.pose, guess), 1e-12);
+  EXPECT_FALSE(result.converged);
+  EXPECT_TRUE(result.degenerate);
 }
 
 TEST(Registration, SaysThatACorridorDoesNotTellWhereAlongIt) {

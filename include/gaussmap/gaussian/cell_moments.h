@@ -13,10 +13,12 @@ inline constexpr std::int64_t kStepsPerCell = std::int64_t{1} << 16;
 
 /// Exact sums over the points of one cell, in integers, so that any order of points, any number of threads
 /// and any split into parts merged later give the same bytes. Offsets are counted from the cell's centre in
-/// steps, -32768 ... 32767: a product has at most 30 bits, so a cell holds up to 2^33 - 1 points.
+/// steps, -32768 ... 32767: a product has at most 30 bits, so a cell holds up to 2^33 - 1 points. One more is refused:
+/// add() and += throw std::length_error and leave the sums as they were.
 template <int D>
 struct CellMoments {
   static constexpr int kProducts = D * (D + 1) / 2;
+  static constexpr std::int64_t kMostPoints = (std::int64_t{1} << 33) - 1;
   using Offset = std::array<std::int32_t, D>;
 
   std::int64_t count = 0;
@@ -24,6 +26,7 @@ struct CellMoments {
   std::array<std::int64_t, kProducts> product{};  ///< sum of products, upper triangle by rows: xx xy xz yy yz zz
 
   void add(const Offset& offset) {
+    requireRoom(1);
     ++count;
     int slot = 0;
     for (std::size_t row = 0; row < D; ++row) {
@@ -35,6 +38,7 @@ struct CellMoments {
 
   /// Sums of two disjoint sets of points of the same cell.
   CellMoments& operator+=(const CellMoments& other) {
+    requireRoom(other.count);
     count += other.count;
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += other.sum[i];
     for (std::size_t i = 0; i < product.size(); ++i) product[i] += other.product[i];
@@ -47,6 +51,11 @@ struct CellMoments {
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] -= part.sum[i];
     for (std::size_t i = 0; i < product.size(); ++i) product[i] -= part.product[i];
     return *this;
+  }
+
+  /// Throws std::length_error if so many more points are too many.
+  void requireRoom(std::int64_t more) const {
+    if (more > kMostPoints - count) throwTooMany();
   }
 
   friend bool operator==(const CellMoments& a, const CellMoments& b) {
@@ -62,6 +71,9 @@ struct CellMoments {
   /// The floor is added, not clamped: moment matching of cells then equals the moments of all their points
   /// plus the same floor, at every scale.
   Gaussian<D> gaussian(double side, double noise) const;
+
+ private:
+  [[noreturn]] static void throwTooMany();
 };
 
 }  // namespace gaussmap

@@ -26,7 +26,7 @@ struct Gaussian {
 };
 
 /// KL(p || q) [nat] = (tr(Sq^-1 Sp) + (mq-mp)' Sq^-1 (mq-mp) - D + ln |Sq|/|Sp|) / 2, Yguel 2009 eq. (8).
-/// Not symmetric, not a metric. Throws std::domain_error if a covariance is not positive definite.
+/// Never negative. Not symmetric, not a metric. Throws std::domain_error if a covariance is not positive definite.
 template <int D>
 double klDivergence(const Gaussian<D>& p, const Gaussian<D>& q);
 

@@ -8,9 +8,11 @@
 
 namespace gaussmap {
 
+struct OpenFile;
+
 /// A file that appears whole or not at all. It is written as `<target>.part` beside the target, then renamed over
 /// it: readers see the old file or the new one, whatever happens in between. One writer at a time: the part file is
-/// locked. A part file left by a process that died is not locked, and is taken over.
+/// locked. A part file left by a process that died is not locked, and is taken over; handleSignals() removes it.
 class AtomicFile {
  public:
   /// Opens the part file, empty. A target that is a symbolic link is followed, the link stays.
@@ -41,7 +43,8 @@ class AtomicFile {
 
   std::filesystem::path target_;
   std::filesystem::path part_;
-  int file_ = -1;  // -1: committed
+  int file_ = -1;              // -1: committed
+  OpenFile* entry_ = nullptr;  // what a signal handler sees, see handleSignals()
 };
 
 }  // namespace gaussmap

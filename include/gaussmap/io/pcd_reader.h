@@ -53,7 +53,7 @@ struct PcdColumn {
 /// One open PCD file (versions 0.5 to 0.7; ascii, binary, binary_compressed) with x, y and z as floats or doubles
 /// anywhere in it. No file makes it crash, hang, or ask for more memory than a small multiple of the file's size.
 /// Opening reads the header and checks it against the size of the file, but touches no point: thousands of scans
-/// may be open at once. A file must not be made shorter while it is open.
+/// may be open at once. A file that is made shorter meanwhile raises SIGBUS, see handleSignals() and requireWhole().
 class PcdReader {
  public:
   /// Throws FileError, with the line of the header or the byte of the file and the way out.
@@ -72,6 +72,9 @@ class PcdReader {
   /// parses an ascii file or expands a compressed one and keeps x, y and z for as long as the reader lives.
   /// Throws FileError if those data are damaged.
   void read(std::size_t first, PointBlock<3>& block) const;
+  /// To be called after the last read(): throws FileError if somebody cut the file off since it was opened, for some of
+  /// the points are then zeros. The calls below look for themselves.
+  void requireWhole() const;
 
   /// The columns asked for, size() numbers each. An element I8 or U8 beyond 2^53 is rounded. Thread-safe.
   /// Throws FileError if a field or element is missing, is no scalar of 1, 2, 4 or 8 bytes, or the data are damaged.

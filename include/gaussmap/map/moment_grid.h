@@ -37,7 +37,8 @@ class MomentGrid {
   std::int64_t pointCount() const { return point_count_; }
 
   /// Counts the finite points of a block [m, map frame] and returns how many they were.
-  /// Throws std::out_of_range, naming the point, if one is too far for 32-bit cells; the block is then not counted.
+  /// Throws std::out_of_range, naming the point, if one is too far for 32-bit cells, and std::length_error if a cell
+  /// would hold more points than CellMoments can; the block is then not counted.
   std::size_t add(const PointBlock<D>& block);
 
   /// Counts `count` points, `point(i)` giving anything indexable by axis ([0], [1], ...). Returns how many were finite.

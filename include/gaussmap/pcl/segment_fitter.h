@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <pcl/PointIndices.h>
 #include <pcl/console/print.h>
 #include <pcl/pcl_base.h>
 #include <pcl/impl/pcl_base.hpp>  // a user's own point type has no other
@@ -9,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "gaussmap/io/planar_scan.h"
 #include "gaussmap/segments/segment_fitter.h"
@@ -38,8 +40,7 @@ class PointCloudSegmentFitter : public pcl::PCLBase<PointT> {
     }
     Scan scan;
     const auto& cloud = *this->input_;
-    scan.pose.translation = cloud.sensor_origin_.template head<3>().template cast<double>();
-    scan.pose.rotation = cloud.sensor_orientation_.template cast<double>();
+    scan.pose = sensorPose();
     for (const auto index : *this->indices_)
       scan.points.push_back(cloud[static_cast<std::size_t>(index)].getVector3fMap().template cast<double>());
     this->deinitCompute();
@@ -54,10 +55,54 @@ class PointCloudSegmentFitter : public pcl::PCLBase<PointT> {
     }
   }
 
+  /// The points of the input cloud on each segment of the map, as it is now, in its order: of each point the nearest
+  /// segment, if it lies within `tolerance` [m] (and in the slice, if there is one); map frame, seen from above. A
+  /// cloud that fit() would not take gives an error and nothing.
+  void segmentIndices(std::vector<pcl::PointIndices>& segments, double tolerance = 0.1) {
+    segments.clear();
+    if (!this->initCompute()) {
+      PCL_ERROR("[gaussmap::PointCloudSegmentFitter::segmentIndices] no input cloud\n");
+      return;
+    }
+    Pose pose = sensorPose();
+    if (const std::string fault = poseFault(pose); !fault.empty()) {
+      PCL_ERROR("[gaussmap::PointCloudSegmentFitter::segmentIndices] %s\n", fault.c_str());
+      this->deinitCompute();
+      return;
+    }
+    pose = normalised(pose);
+    const SegmentMap map = this->map();
+    segments.resize(map.segments.size());
+    for (pcl::PointIndices& segment : segments) segment.header = this->input_->header;
+    for (const auto index : *this->indices_) {
+      const Eigen::Vector3d sensed =
+          (*this->input_)[static_cast<std::size_t>(index)].getVector3fMap().template cast<double>();
+      const Eigen::Vector3d point = pose.rotation * sensed + pose.translation;
+      if (!point.allFinite() || (planar_.slice && (point.z() < planar_.z_min || point.z() > planar_.z_max))) continue;
+      double least = tolerance;
+      pcl::PointIndices* nearest = nullptr;
+      for (std::size_t s = 0; s < segments.size(); ++s) {
+        const double distance = map.segments[s].distance({point.x(), point.y()});
+        if (distance > least || (nearest && distance == least)) continue;
+        least = distance;
+        nearest = &segments[s];
+      }
+      if (nearest) nearest->indices.push_back(index);
+    }
+    this->deinitCompute();
+  }
+
   SegmentMap map() const { return fitter_.map(); }
   const SegmentFitter& fitter() const { return fitter_; }
 
  private:
+  Pose sensorPose() const {
+    Pose pose;
+    pose.translation = this->input_->sensor_origin_.template head<3>().template cast<double>();
+    pose.rotation = this->input_->sensor_orientation_.template cast<double>();
+    return pose;
+  }
+
   SegmentFitter fitter_;
   PlanarScanOptions planar_;
 };

@@ -11,13 +11,14 @@
 namespace gaussmap {
 
 struct RegistrationOptions {
-  /// The scan becomes Gaussians of cells of this side [m], > 0; 0: twice the map's finest cells.
+  /// The scan becomes Gaussians of cells of this side [m], > 0, and of four times that for the coarse scales; 0: as the
+  /// map's finest cells.
   double resolution = 0.0;
-  std::size_t most_gaussians = 4000;  ///< of the scan that are used, evenly chosen, >= 1
+  std::size_t most_gaussians = 4000;  ///< of the scan that are used at a step, evenly chosen, >= 1
   int max_iterations = 30;            ///< of each step from coarse to fine, >= 1
   double kernel = 3.0;        ///< residuals of this many standard deviations count half as much as they would, > 0
-  double translation = 1e-4;  ///< a step is done when an iteration moves less than this [m] ...
-  double rotation = 1e-5;     ///< ... and turns less than this [rad]
+  double translation = 5e-4;  ///< a step is done when an iteration moves less than this [m] ...
+  double rotation = 5e-5;     ///< ... and turns less than this [rad]
   double degenerate = 0.01;   ///< least over largest information of a direction below which a pose is degenerate
   int threads = 1;            ///< 0 = all; never shows in the result
 };
@@ -38,7 +39,8 @@ struct RegistrationResult {
 /// Where a scan was taken: moves it onto a map, from the coarsest scale to the finest. At every scale each Gaussian of
 /// the scan looks for the nearest one of the map; the covariances are widened at first by a part of the cells. Damped
 /// Gauss-Newton over the squared Mahalanobis distances under a robust kernel (Geman, McClure). A Gaussian of the map
-/// says nothing about the directions in which it fills its cell.
+/// says nothing about the directions in which it fills its cell, and one of the finest scale little about others than
+/// its thinnest.
 ///
 /// `points` [m, scan frame]; NaN and infinite ones are left out. Throws std::invalid_argument, naming the option, or
 /// for an empty map or a guess with a fault.

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// gaussmap-view MAP [CLOUD...]: what `gaussmap view` starts.
+#include <charconv>
+#include <iostream>
+#include <map>
+
+#include "common.h"
+#include "gaussmap/io/map_pcd.h"
+#include "gaussmap/io/pcd_reader.h"
+#include "gaussmap/io/segment_files.h"
+#include "gaussmap/io/signals.h"
+#include "gaussmap/viewer/viewer.h"
+
+namespace gaussmap::app {
+namespace {
+
+struct ViewCommand {
+  std::string map;
+  ScanInput cloud;
+  std::optional<int> scale;
+  bool leaves = false;
+  std::string colour;  // empty: the default
+  std::string up = "z", from = "iso", size = "1200x800";
+  std::vector<double> at;
+  Output png;
+  ViewOptions view;
+};
+
+const std::map<std::string, ColourBy> kColours = {{"scale", ColourBy::Scale},   {"height", ColourBy::Height},
+                                                  {"normal", ColourBy::Normal}, {"weight", ColourBy::Weight},
+                                                  {"error", ColourBy::Error},   {"occupancy", ColourBy::Occupancy}};
+const std::map<std::string, Vector<3>> kUp = {{"x", {1, 0, 0}},   {"y", {0, 1, 0}},   {"z", {0, 0, 1}},
+                                              {"-x", {-1, 0, 0}}, {"-y", {0, -1, 0}}, {"-z", {0, 0, -1}}};
+
+/// "1,2.5,-3" or "800x600"; nothing if it is anything else.
+template <typename Number>
+std::vector<Number> numbersIn(const std::string& text, char between, std::size_t count) {
+  std::vector<Number> numbers;
+  const char* place = text.data();
+  const char* const end = place + text.size();
+  while (numbers.size() < count) {
+    Number number{};
+    const auto [next, error] = std::from_chars(place, end, number);
+    const bool is_last = numbers.size() + 1 == count;
+    if (error != std::errc() || (is_last ? next != end : next == end || *next != between)) return {};
+    numbers.push_back(number);
+    place = is_last ? next : next + 1;
+  }
+  return numbers;
+}
+
+ViewPoint viewPoint(const ViewCommand& command, const Vector<3>& up) {
+  if (command.from == "iso") return {};
+  if (command.from == "top") return viewFromAbove(up);
+  const std::vector<double> numbers = numbersIn<double>(command.from, ',', 3);
+  ViewPoint view;
+  if (!numbers.empty()) view.direction = {numbers[0], numbers[1], numbers[2]};
+  if (numbers.empty() || !view.direction.allFinite() || !(view.direction.norm() > 1e-6))
+    throw UsageError("--view " + command.from + ": say top, iso, or from where: three numbers such as -1,-2,1.5");
+  return view;
+}
+
+std::pair<int, int> sizeOf(const ViewCommand& command) {
+  const std::vector<int> numbers = numbersIn<int>(command.size, 'x', 2);
+  for (const int number : numbers)
+    if (number < 16 || number > 8192) throw UsageError("--size " + command.size + ": from 16 to 8192 pixels a side");
+  if (numbers.empty()) throw UsageError("--size " + command.size + ": two numbers, such as 1200x800");
+  return {numbers[0], numbers[1]};
+}
+
+bool isSegmentMap(const std::string& path) {
+  if (isGmap(path)) return false;
+  const PcdReader reader(path);
+  return reader.header().find("normal_variance") != nullptr && reader.header().find("chain") != nullptr;
+}
+
+std::vector<Vector<3>> readCloud(const ScanInput& input) {
+  if (input.paths.empty()) return {};
+  const std::vector<ScanSource> scans = findScans(input);
+  std::vector<Vector<3>> points = readScans(scans, accumulateOptions(input, 1.0, 0));
+  if (points.empty()) throw std::runtime_error(nameOf(scans) + ": no point is usable");
+  return points;
+}
+
+void checkForSegments(const ViewCommand& command) {
+  for (const auto& [name, given] :
+       {std::pair("--scale", command.scale.has_value()), std::pair("--leaves", command.leaves),
+        std::pair("--color", !command.colour.empty()), std::pair("--cells", command.view.cells),
+        std::pair("--hierarchy", command.view.hierarchy)})
+    if (given) throw UsageError(std::string(name) + ": " + command.map + " is a map of segments, which has none");
+}
+
+/// Fills in what depends on the map.
+void setScale(const ViewCommand& command, const GaussianMap<3>& map, ViewOptions& view) {
+  if (command.leaves && command.scale) throw UsageError("--leaves and --scale: one of them");
+  if (command.scale && *command.scale >= map.scales())
+    throw UsageError("--scale " + std::to_string(*command.scale) + ": the map has the scales 0 to " +
+                     std::to_string(map.scales() - 1));
+  if (command.leaves) return;
+  view.scale = command.scale.value_or(scaleToShow(map));
+  if (view.colour == ColourBy::Error && *view.scale == 0 && command.cloud.paths.empty() && !view.hierarchy)
+    throw UsageError("--color error: nothing is finer than scale 0, give a CLOUD to compare with or a coarser --scale");
+}
+
+void run(ViewCommand command) {
+  const auto [width, height] = sizeOf(command);
+  ViewOptions view = command.view;
+  view.up = kUp.at(command.up);
+  const double zoom = view.view.zoom;
+  view.view = viewPoint(command, view.up);
+  view.view.zoom = zoom;
+  if (!command.at.empty()) view.view.middle = Vector<3>(command.at[0], command.at[1], command.at[2]);
+  if (!command.colour.empty()) view.colour = kColours.at(command.colour);
+  if (!command.png.path.empty()) {
+    if (std::filesystem::path(command.png.path).extension() != ".png")
+      throw UsageError(command.png.path + ": the name must end in .png");
+    checkOutput(command.png, {command.map});
+  }
+  ViewScene scene;
+  scene.name = std::filesystem::path(command.map).filename().string();
+  if (std::filesystem::exists(command.map) && isSegmentMap(command.map)) {
+    checkForSegments(command);
+    scene.map = readSegmentPcd(command.map);
+  } else {
+    GaussianMap<3> map = loadAnyMap(command.map);
+    if (map.empty()) throw std::runtime_error(command.map + ": there is no Gaussian in it");
+    setScale(command, map, view);
+    scene.map = std::move(map);
+  }
+  scene.cloud = readCloud(command.cloud);
+  Viewer viewer(std::move(scene), view);
+  if (command.png.path.empty()) return viewer.show(width, height);
+  viewer.savePng(command.png.path, width, height);
+  std::cout << command.png.path << ": " << width << " x " << height << ", "
+            << humanBytes(std::filesystem::file_size(command.png.path)) << '\n';
+}
+
+void addOptions(CLI::App& app, ViewCommand& command) {
+  app.add_option("map", command.map, "map (.gmap, or PCD of Gaussians or of segments)")->required();
+  app.add_option("cloud", command.cloud.paths, "PCD files or directories, shown over the map");
+  addScanOptions(app, command.cloud);
+  app.add_option("--scale", command.scale, "which scale, 0 = finest; default: the finest of at most 200,000 Gaussians")
+      ->check(CLI::Range(0, 63));
+  app.add_flag("--leaves", command.leaves, "the map at its finest, as gaussmap compress left it");
+  app.add_option("--color", command.colour,
+                 "height (default), scale, normal, weight, occupancy, or error: distance to the CLOUD, without one to "
+                 "the finer detail")
+      ->check(CLI::IsMember({"height", "scale", "normal", "weight", "occupancy", "error"}));
+  app.add_option("--sigma", command.view.sigma, "half axes of the ellipsoids, in standard deviations")
+      ->check(numberBetween(0.01, 100.0))
+      ->capture_default_str();
+  app.add_flag("--cells", command.view.cells, "the occupied cells, as boxes");
+  app.add_flag("--hierarchy", command.view.hierarchy, "all scales, lifted one above the other, children linked");
+  app.add_option("--up", command.up, "what is up: x, y, z, -x, -y, -z")
+      ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))
+      ->capture_default_str();
+  app.add_option("--view", command.from, "top, iso, or x,y,z: the direction from the map to the eye")
+      ->capture_default_str();
+  app.add_option("--zoom", command.view.view.zoom, "1 = all of the map")
+      ->check(numberBetween(0.01, 1000.0))
+      ->capture_default_str();
+  app.add_option("--at", command.at, "the place to look at [m]; default: the middle")
+      ->expected(3)
+      ->type_name("X Y Z")
+      ->check(numberBetween(-1e9, 1e9));
+  app.add_option("--png", command.png.path, "save a picture instead of opening a window; needs no display");
+  app.add_option("--size", command.size, "of the picture or window [pixels]")->capture_default_str();
+  app.add_flag("--force", command.png.force, "replace an existing picture");
+}
+
+}  // namespace
+}  // namespace gaussmap::app
+
+int main(int argc, char** argv) {
+  using namespace gaussmap::app;
+  gaussmap::handleSignals("gaussmap");
+  CLI::App app("Look at a map in a window, or save a picture (--png)", "gaussmap view");
+  app.footer("Keys:\n" + gaussmap::Viewer::helpText() +
+             "\nExample: gaussmap view street.gmap --scale 1 --color normal --png street.png --size 1600x900");
+  ViewCommand command;
+  addOptions(app, command);
+  try {
+    app.parse(argc, argv);
+    run(command);
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help
+    std::cerr << "gaussmap: " << error.what() << " (see gaussmap view --help)\n";
+    return 2;
+  } catch (const UsageError& error) {
+    std::cerr << "gaussmap: " << error.what() << '\n';
+    return 2;
+  } catch (const std::exception& error) {
+    std::cerr << "gaussmap: " << error.what() << '\n';
+    return 1;
+  }
+}

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+
+#include "gaussmap/io/pose.h"
+#include "registration/normal_equations.h"
+
+namespace gaussmap {
+
+struct DescentLimits {
+  int max_iterations;
+  double translation;  ///< done when an iteration moves less than this [m] ...
+  double rotation;     ///< ... and turns less than this [rad]
+};
+
+struct Descent {
+  Pose pose;
+  NormalEquations equations;  ///< there
+  int iterations = 0;
+  bool converged = false;
+};
+
+/// Damped Gauss-Newton (Levenberg, Marquardt) from a pose downwards: a step that raises the cost is not taken, but
+/// tried shorter. `at` gives the equations at a pose.
+Descent descend(const std::function<NormalEquations(const Pose&)>& at, const Pose& start, const DescentLimits& limits);
+
+}  // namespace gaussmap

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <limits>
+
+#include "gaussmap/evaluation/nearest_distances.h"
+#include "gaussmap/evaluation/sample_map.h"
+#include "gaussmap/viewer/colouring.h"
+
+namespace gaussmap {
+
+std::vector<double> gaussianErrors(const GaussianMap<3>& map, int scale, const std::vector<Vector<3>>& reference) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const std::size_t count = map.gaussianCount(scale);
+  if (count == 0 || (reference.empty() && scale == 0)) return std::vector<double>(count, kNone);
+  std::vector<Vector<3>> detail;
+  if (reference.empty())
+    for (const GaussianId& id : leaves(map)) detail.push_back(map.gaussian(id.index, id.scale).mean);
+
+  SampleOptions options;
+  options.share = SampleShare::Mass;
+  const MapSamples<3> samples = sampleMap(map, scale, options);
+  const std::vector<double> distances = nearestDistances(samples.points, reference.empty() ? detail : reference);
+  std::vector<double> sums(count, 0.0), numbers(count, 0.0);
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    sums[samples.gaussian[i]] += distances[i];
+    numbers[samples.gaussian[i]] += 1.0;
+  }
+  for (std::size_t i = 0; i < count; ++i) sums[i] = numbers[i] > 0.0 ? sums[i] / numbers[i] : kNone;
+  return sums;
+}
+
+}  // namespace gaussmap

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vtkActor2D.h>
+#include <vtkSmartPointer.h>
+
+#include <string>
+#include <vector>
+
+#include "gaussmap/viewer/colouring.h"
+
+namespace gaussmap {
+
+enum class Corner { TopLeft, TopRight, BottomLeft };
+
+/// Lines of text in a corner of a picture of that height [pixels].
+vtkSmartPointer<vtkActor2D> textActor(const std::string& text, Corner corner, int height);
+
+/// What the colours mean: numbers beside a bar, or names on their colours.
+std::vector<vtkSmartPointer<vtkActor2D>> colourBar(const Colouring& colouring, int height);
+
+}  // namespace gaussmap

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <pcl/io/pcd_io.h>
+#include <pcl/point_types.h>
+
+#include <algorithm>
+#include <ctime>
+#include <filesystem>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "gaussmap/io/scan_list.h"
+#include "gaussmap/simulation/simulation.h"
+
+namespace gaussmap::benchmark {
+
+struct NamedCloud {
+  std::string name;
+  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud;
+};
+
+/// The first scan of each directory or PCD file; without any, the first scan of the simulated street.
+inline std::vector<NamedCloud> loadClouds(const std::vector<std::string>& paths) {
+  std::vector<NamedCloud> clouds;
+  for (const std::string& path : paths) {
+    const std::filesystem::path file =
+        std::filesystem::is_directory(path) ? listScans({path}).at(0) : std::filesystem::path(path);
+    auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
+    if (pcl::io::loadPCDFile(file.string(), *cloud) != 0) throw std::runtime_error(file.string() + ": cannot be read");
+    clouds.push_back({file.parent_path().filename() / file.filename(), cloud});
+  }
+  if (!paths.empty()) return clouds;
+  const Simulation street = makeSimulation(WorldName::Street, {1, false});
+  const SimulatedScan scan = simulateScan(street, 0);
+  auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
+  for (const auto& p : scan.points) cloud->emplace_back(float(p.x()), float(p.y()), float(p.z()));
+  return {{"street, simulated", cloud}};
+}
+
+/// Least processor time of some runs [s]: other programs on the machine do not count. Of several threads: their sum.
+template <typename Run>
+double leastSeconds(int runs, const Run& run) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < runs; ++i) {
+    const std::clock_t start = std::clock();
+    run();
+    least = std::min(least, double(std::clock() - start) / CLOCKS_PER_SEC);
+  }
+  return least;
+}
+
+}  // namespace gaussmap::benchmark

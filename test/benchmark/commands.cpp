@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdio>
+#include <stdexcept>
+
+#include "gaussmap/io/pcd_writer.h"
+#include "measure.h"
+#include "parts.h"
+#include "street_scene.h"
+
+namespace gaussmap::benchmark {
+namespace {
+
+using Command = std::vector<std::string>;
+
+bool isInstalled(const std::string& program) {
+  return std::system(("command -v " + program + " >/dev/null").c_str()) == 0;
+}
+
+void compare(const std::string& part, const std::string& input, const std::vector<Command>& commands, int runs,
+             Table& table) {  // ours with one thread, with two, the peer's
+  const std::vector<Measured> of = measureCommandsInTurn(commands, runs);
+  for (int threads = 1; threads <= 2; ++threads) {
+    const Measured& own = of[static_cast<std::size_t>(threads) - 1];
+    table.add(Row{part, input, threads, own.seconds, own.megabytes, commands.back().front(), of.back().seconds,
+                  of.back().megabytes, 0.0});
+  }
+}
+
+}  // namespace
+
+void measureCommands(const Options& options, const std::filesystem::path& work, Table& table) {
+  if (!isInstalled("pcl_voxel_grid") || !isInstalled("pcl_compute_hausdorff")) {
+    std::printf("whole commands: pcl-tools is not installed\n");
+    return;
+  }
+  const std::string gaussmap = std::filesystem::path(options.build) / "apps" / "gaussmap";
+  const std::size_t points = options.points.front();
+  const std::string cloud = work / "drive.pcd";
+  writePcd(cloud, benchmark_input::streetPoints(points, 0, 1));
+  for (const std::string leaf : {"0.1", "0.2", "1"}) {
+    const auto map = [&](const char* threads) {
+      return Command{gaussmap,       "pcd2map", cloud,     "-o",  work / "map.gmap", "--force", "--budget", "1",
+                     "--resolution", leaf,      "--frame", "map", "--threads",       threads};
+    };
+    compare("pcd2map, three scales", std::to_string(points) + " points, " + leaf + " m",
+            {map("1"), map("2"), {"pcl_voxel_grid", cloud, work / "out.pcd", "-leaf", leaf + "," + leaf + "," + leaf}},
+            options.runs, table);
+  }
+  const std::size_t fewer = std::min<std::size_t>(points, 1000000);
+  const std::string a = work / "a.pcd", b = work / "b.pcd";
+  writePcd(a, benchmark_input::streetPoints(fewer, 0, 1));
+  writePcd(b, benchmark_input::streetPoints(fewer, 9, 1));
+  const auto distance = [&](const char* threads) {
+    return Command{gaussmap, "hausdorff", a, b, "--frame", "map", "--threads", threads};
+  };
+  compare("gaussmap hausdorff", std::to_string(fewer) + " points each",
+          {distance("1"), distance("2"), {"pcl_compute_hausdorff", a, b}}, options.runs, table);
+}
+
+void runOthers(const Options& options, const std::filesystem::path& work, Table& table) {
+  const std::string folder = std::filesystem::path(options.build) / "test" / "benchmark";
+  const std::string kitti = options.data + "/kitti_6scans", office = options.data + "/rgbd_office_single";
+  std::vector<Command> commands = {{"gaussmap_refinement_speed"},
+                                   {"gaussmap_registration_benchmark"},
+                                   {"gaussmap_normals_benchmark"},
+                                   {"gaussmap_segments_benchmark", "--only-speed"}};
+  for (Command& command : commands) {
+    const std::string json = work / (command.front() + ".json");
+    command.front() = folder + "/" + command.front();
+    command.insert(command.end(), {"--json", json});
+    if (!options.data.empty()) command.insert(command.end(), {"--data", options.data});
+    measureCommandsInTurn({command}, 1);
+    addJson(json, table);
+  }
+}
+
+}  // namespace gaussmap::benchmark

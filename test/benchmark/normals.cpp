@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// gaussmap_normals_benchmark [DIR or PCD...] [--json FILE]: GaussianMapNormalEstimation beside pcl::NormalEstimationOMP
+// (20 neighbours): times with one and two threads, and the angle between their normals. Of the simulated street the
+// angles to the true normals too.
+#include <pcl/features/normal_3d_omp.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "clouds.h"
+#include "gaussmap/evaluation/mesh_tree.h"
+#include "gaussmap/pcl/normal_estimation.h"
+
+namespace gaussmap::benchmark {
+namespace {
+
+using Normals = pcl::PointCloud<pcl::Normal>;
+
+constexpr int kNeighbours = 20;
+
+double wallSeconds(int runs, const std::function<void()>& run) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < runs; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    run();
+    least = std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+  return least;
+}
+
+double degrees(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+  return 180.0 / M_PI * std::acos(std::min(1.0, std::abs(double(a.dot(b)))));
+}
+
+struct Angles {
+  double median = 0.0, q75 = 0.0, q90 = 0.0;
+};
+
+template <typename NormalAt>
+Angles anglesOf(const Normals& normals, const NormalAt& expected) {
+  std::vector<double> angles;
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    const Eigen::Vector3f own = normals[i].getNormalVector3fMap(), other = expected(i);
+    if (own.allFinite() && other.allFinite()) angles.push_back(degrees(own, other));
+  }
+  std::sort(angles.begin(), angles.end());
+  if (angles.empty()) return {};
+  return {angles[angles.size() / 2], angles[angles.size() * 3 / 4], angles[angles.size() * 9 / 10]};
+}
+
+void compare(const NamedCloud& input, int runs, nlohmann::json& json) {
+  for (const int threads : {1, 2}) {
+    pcl::NormalEstimationOMP<pcl::PointXYZ, pcl::Normal> theirs(static_cast<unsigned>(threads));
+    GaussianMapNormalEstimation<pcl::PointXYZ> ours;
+    ours.setNumberOfThreads(threads);
+    theirs.setKSearch(kNeighbours);
+    ours.setKSearch(kNeighbours);
+    theirs.setInputCloud(input.cloud);
+    ours.setInputCloud(input.cloud);
+    Normals their_normals, our_normals;
+    // One thread: processor time, which nobody else's program disturbs.
+    const auto time = [&](const std::function<void()>& run) {
+      return threads == 1 ? leastSeconds(runs, run) : wallSeconds(runs, run);
+    };
+    const double our_seconds = time([&] { ours.compute(our_normals); });
+    const double their_seconds = time([&] {
+      theirs.setSearchMethod(nullptr);  // its tree is part of the work
+      theirs.compute(their_normals);
+    });
+    const Angles angles =
+        anglesOf(our_normals, [&](std::size_t i) { return Eigen::Vector3f(their_normals[i].getNormalVector3fMap()); });
+    std::printf("| %-32s | %7zu | %d | %7.1f | %7.1f | %5.1f | %5.2f | %5.2f | %5.2f |\n", input.name.c_str(),
+                input.cloud->size(), threads, 1e3 * their_seconds, 1e3 * our_seconds, their_seconds / our_seconds,
+                angles.median, angles.q75, angles.q90);
+    std::fflush(stdout);
+    json.push_back({{"cloud", input.name},
+                    {"points", input.cloud->size()},
+                    {"threads", threads},
+                    {"pcl_seconds", their_seconds},
+                    {"seconds", our_seconds},
+                    {"median_degrees", angles.median},
+                    {"q75_degrees", angles.q75},
+                    {"q90_degrees", angles.q90}});
+  }
+}
+
+/// Against the surfaces that the rays met.
+void compareWithTruth(nlohmann::json& json) {
+  const Simulation street = makeSimulation(WorldName::Street, {1, false});
+  const SimulatedScan scan = simulateScan(street, 0);
+  const TriangleMesh& mesh = street.world.mesh();
+  const MeshTree tree(mesh);
+  const Eigen::Matrix3d to_sensor = scan.pose.rotation.toRotationMatrix().transpose();
+  std::vector<Eigen::Vector3f> truth;
+  auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
+  for (std::size_t i = 0; i < scan.points.size(); ++i) {
+    const Eigen::Vector3f p = scan.points[i].cast<float>();
+    cloud->emplace_back(p.x(), p.y(), p.z());
+    const auto& corners = mesh.triangles[tree.nearest(scan.truth[i])->triangle];
+    const Eigen::Vector3d a = mesh.vertices[corners[0]], b = mesh.vertices[corners[1]], c = mesh.vertices[corners[2]];
+    truth.push_back((to_sensor * (b - a).cross(c - a).normalized()).cast<float>());
+  }
+  std::printf(
+      "\n| simulated street, angle to the true normal [degrees] | median | 75 %% | 90 %% |\n|---|---|---|---|\n");
+  const auto row = [&](const char* name, pcl::Feature<pcl::PointXYZ, pcl::Normal>& method) {
+    method.setKSearch(kNeighbours);
+    method.setInputCloud(cloud);
+    Normals normals;
+    method.compute(normals);
+    const Angles angles = anglesOf(normals, [&](std::size_t i) { return truth[i]; });
+    std::printf("| %-44s | %5.2f | %5.2f | %5.2f |\n", name, angles.median, angles.q75, angles.q90);
+    json.push_back({{"method", name},
+                    {"true_median_degrees", angles.median},
+                    {"true_q75_degrees", angles.q75},
+                    {"true_q90_degrees", angles.q90}});
+  };
+  pcl::NormalEstimationOMP<pcl::PointXYZ, pcl::Normal> theirs(1);
+  GaussianMapNormalEstimation<pcl::PointXYZ> ours;
+  row("pcl::NormalEstimationOMP", theirs);
+  row("GaussianMapNormalEstimation", ours);
+}
+
+}  // namespace
+}  // namespace gaussmap::benchmark
+
+int main(int argc, char** argv) try {
+  using namespace gaussmap::benchmark;
+  CLI::App app("GaussianMapNormalEstimation beside pcl::NormalEstimationOMP");
+  std::vector<std::string> paths;
+  std::string json;
+  int runs = 5;
+  app.add_option("clouds", paths, "PCD files, or directories of which the first scan counts");
+  app.add_option("--runs", runs, "of which the fastest counts")->check(CLI::Range(1, 100));
+  app.add_option("--json", json, "file for machines");
+  CLI11_PARSE(app, argc, argv);
+  nlohmann::json figures = nlohmann::json::array();
+  std::printf(
+      "| %-32s | points  | threads | pcl [ms] | ours [ms] | pcl / ours | angle between them, median [degrees] | 75 %% "
+      "| "
+      "90 %% |\n|---|---|---|---|---|---|---|---|---|\n",
+      "cloud");
+  for (const NamedCloud& cloud : loadClouds(paths)) compare(cloud, runs, figures);
+  compareWithTruth(figures);
+  if (!json.empty()) std::ofstream(json) << figures.dump(2) << '\n';
+  return 0;
+} catch (const std::exception& error) {
+  std::cerr << "gaussmap_normals_benchmark: " << error.what() << '\n';
+  return 1;
+}

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "gaussmap/gaussian/gaussian.h"
+#include "table.h"
+
+namespace gaussmap::benchmark {
+
+using Cloud = pcl::PointCloud<pcl::PointXYZ>;
+
+/// A cloud that everybody is measured on.
+struct Input {
+  std::string name;
+  Cloud::Ptr cloud;
+};
+
+Cloud::Ptr cloudOf(const std::vector<Vector<3>>& points);
+
+struct Options {
+  std::vector<std::size_t> points = {5000000, 20000000};  ///< of the simulated drive
+  std::string data;                                       ///< directory with kitti_6scans and so on; empty: none
+  std::string build;                                      ///< directory of the other programs of the benchmark
+  int runs = 3;                                           ///< the median counts; one for more than ten million points
+};
+
+/// The finest scale beside pcl::VoxelGridCovariance, std::unordered_map and OctoMap's hits: time, memory.
+void measureBuilding(const Input& input, int runs, bool is_goal, Table& table);
+/// What the coarser scales take of building.
+void measureCoarsening(const Input& input, int runs, Table& table);
+/// PCD files beside pcl::io::loadPCDFile.
+void measureReading(const Cloud& cloud, const std::filesystem::path& work, int runs, Table& table);
+/// Distances of two clouds beside pcl::KdTreeFLANN.
+void measureHausdorff(std::size_t points, int runs, Table& table);
+/// Scan by scan beside OctoMap with rays.
+void measureOnline(const Options& options, Table& table);
+/// Whole commands beside pcl-tools; nothing where these are not installed.
+void measureCommands(const Options& options, const std::filesystem::path& work, Table& table);
+/// What the other programs of the benchmark measure.
+void runOthers(const Options& options, const std::filesystem::path& work, Table& table);
+/// Time and memory against numbers of points and cells, fitted.
+void measureGrowth(const std::vector<std::size_t>& points, Table& table);
+
+}  // namespace gaussmap::benchmark

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// gaussmap_registration_benchmark [--data DIR] [--starts 3] [--basin 10] [--json FILE]: a scan onto a scan, beside
+// PCL's NDT and GICP. DIR has the directories kitti_6scans, mulran_kaist03_21scans and dtk_indoor_3scans; what is
+// missing is said and left out; the simulated street is always there. One thread, processor time. Prints tables in
+// Markdown.
+#include <pcl/console/print.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "registration_methods.h"
+
+namespace gaussmap::benchmark {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kMetres = 0.05, kDegrees = 0.2;  // a success
+constexpr Offset kNear{0.5, 1.0, false}, kBasin{5.0, 30.0, true};
+
+struct Options {
+  std::string data, json;
+  int starts = 3, basin = 10;
+  bool quick = false, alone = false, each = false;
+};
+
+struct Dataset {
+  std::string name;
+  std::vector<ScanPair> pairs;
+  Sizes sizes;
+};
+
+/// A kind of start: the poses to start from, by pair.
+struct Starts {
+  std::string name;
+  std::vector<std::vector<Pose>> poses;
+};
+
+/// Processor time [ms]: other programs on the machine do not count.
+double now() {
+  return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+Starts startsFrom(const Dataset& data, const std::string& name, const Offset& offset, int count) {
+  Starts starts{name, {}};
+  for (std::size_t pair = 0; pair < data.pairs.size(); ++pair) {
+    starts.poses.emplace_back();
+    for (int i = 0; i < count; ++i)
+      starts.poses.back().push_back(startFrom(data.pairs[pair].reference, offset, 1000 * pair + std::uint64_t(i)));
+  }
+  return starts;
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+struct Score {
+  int tries = 0, successes = 0;
+  std::vector<double> metres, degrees;  // of all tries
+  double align = 0.0;                   // [ms], all tries
+};
+
+void compare(const Dataset& data, const std::vector<Starts>& kinds, const std::vector<Method>& methods,
+             const Options& options, Json& all) {
+  std::printf("| %s, %zu pair%s | start | success | median off | prepare | align | both [ms] |\n", data.name.c_str(),
+              data.pairs.size(), data.pairs.size() == 1 ? "" : "s");
+  std::printf("|---|---|---|---|---|---|---|\n");
+  for (const Method& method : methods) {
+    double prepare = 0.0;
+    std::vector<Score> scores(kinds.size());
+    for (std::size_t i = 0; i < data.pairs.size(); ++i) {
+      const double before = now();
+      const auto prepared = method.prepare(data.pairs[i]);
+      prepare += (now() - before) / double(data.pairs.size());
+      for (std::size_t kind = 0; kind < kinds.size(); ++kind)
+        for (const Pose& start : kinds[kind].poses[i]) {
+          const double started = now();
+          const PoseError error = errorOf(prepared->align(start), data.pairs[i].reference);
+          Score& score = scores[kind];
+          score.align += now() - started;
+          score.successes += error.metres <= kMetres && error.degrees <= kDegrees;
+          ++score.tries;
+          score.metres.push_back(error.metres);
+          score.degrees.push_back(error.degrees);
+          if (options.each)
+            std::fprintf(stderr, "%s %s %s %s: %.3f m %.3f deg\n", method.name.c_str(), data.name.c_str(),
+                         data.pairs[i].name.c_str(), kinds[kind].name.c_str(), error.metres, error.degrees);
+        }
+    }
+    for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+      const Score& score = scores[kind];
+      const double align = score.align / score.tries;
+      std::printf("| %s | %s | %d of %d | %.3f m, %.2f deg | %.0f | %.0f | %.0f |\n", method.name.c_str(),
+                  kinds[kind].name.c_str(), score.successes, score.tries, median(score.metres), median(score.degrees),
+                  prepare, align, prepare + align);
+      std::fflush(stdout);
+      all.push_back({{"data", data.name},
+                     {"pairs", data.pairs.size()},
+                     {"method", method.name},
+                     {"start", kinds[kind].name},
+                     {"tries", score.tries},
+                     {"successes", score.successes},
+                     {"median_metres", median(score.metres)},
+                     {"median_degrees", median(score.degrees)},
+                     {"prepare_ms", prepare},
+                     {"align_ms", align}});
+    }
+  }
+  std::printf("\n");
+}
+
+void run(const Options& options) {
+  std::vector<Dataset> all{{"simulated street", streetPairs(1, options.quick ? 1 : 4), kOutdoor}};
+  if (!options.data.empty()) {
+    const std::filesystem::path root = options.data;
+    all.push_back({"kitti_6scans", filePairs(root / "kitti_6scans", 5, 1), kOutdoor});
+    all.push_back({"mulran_kaist03_21scans", filePairs(root / "mulran_kaist03_21scans", 1, 20), kOutdoor});
+    all.push_back({"dtk_indoor_3scans", filePairs(root / "dtk_indoor_3scans", 1, 2), kIndoor});
+  }
+  Json rows = Json::array();
+  for (const Dataset& data : all) {
+    if (data.pairs.empty()) {
+      std::printf("%s: not in %s\n\n", data.name.c_str(), options.data.c_str());
+      continue;
+    }
+    std::vector<Method> methods{gaussianMap(data.sizes)};
+    if (!options.alone) methods.insert(methods.end(), {pclNdt(data.sizes), pclGicp(data.sizes)});
+    std::vector<Starts> kinds{startsFrom(data, "0.5 m, 1 deg", kNear, options.starts)};
+    if (data.name.rfind("kitti", 0) == 0) kinds.push_back({"identity", {{Pose()}}});
+    if (options.basin > 0) kinds.push_back(startsFrom(data, "up to 5 m, 30 deg", kBasin, options.basin));
+    compare(data, kinds, methods, options, rows);
+  }
+  if (!options.json.empty()) std::ofstream(options.json) << rows.dump(1) << '\n';
+}
+
+}  // namespace
+}  // namespace gaussmap::benchmark
+
+int main(int argc, char** argv) {
+  using namespace gaussmap::benchmark;
+  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
+  CLI::App app("Registration of scans beside PCL's");
+  Options options;
+  app.add_option("--data", options.data, "folder of the datasets");
+  app.add_option("--starts", options.starts, "near starts a pair")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--basin", options.basin, "far starts a pair")->check(CLI::NonNegativeNumber)->capture_default_str();
+  app.add_option("--json", options.json, "write the rows for machines");
+  app.add_flag("--quick", options.quick, "one pair of the street");
+  app.add_flag("--alone", options.alone, "without PCL's");
+  app.add_flag("--each", options.each, "print every try on stderr");
+  CLI11_PARSE(app, argc, argv);
+  run(options);
+  return 0;
+}

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// CARMEN logs, plain and gzip.
+#include "fuzz_file.h"
+#include "gaussmap/io/carmen_log.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace gaussmap;
+  const auto path = fuzz::asFile("robot.log", data, size);
+  fuzz::refusesOrReads([&] {
+    for (const LaserScan& scan : readCarmenLog(path).scans) scan.returned(0);
+  });
+  return 0;
+}

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Maps as PCD files of Gaussians, and maps of line segments.
+#include "fuzz_file.h"
+#include "gaussmap/io/map_pcd.h"
+#include "gaussmap/io/segment_files.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace gaussmap;
+  const auto path = fuzz::asFile("map.pcd", data, size);
+  fuzz::refusesOrReads([&] { loadMapPcd(path); });
+  fuzz::refusesOrReads([&] { readSegmentPcd(path); });
+  return 0;
+}

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gaussmap/pcl/kl_kmeans.h"
+
+#include <gtest/gtest.h>
+
+#include "gaussmap/pcl/conversions.h"
+#include "map/random_clouds.h"
+
+namespace gaussmap {
+namespace {
+
+pcl::PointCloud<PointGaussian>::Ptr finest() {
+  return toPointCloud(build<3>(test::randomCloud<3>(2000, 12), {0.5, 10, 2, 0.0}), 0).makeShared();
+}
+
+TEST(PointCloudKLKMeans, GivesTheClustersOfTheCore) {
+  const auto cloud = finest();
+  std::vector<Gaussian<3>> data;
+  for (const PointGaussian& point : *cloud) {
+    Gaussian<3> gaussian;
+    const auto& c = point.covariance;
+    gaussian.mean = point.getVector3fMap().cast<double>();
+    gaussian.cov << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
+    gaussian.weight = double(point.weight);
+    data.push_back(gaussian);
+  }
+  KLKMeansOptions options;
+  options.k = 7;
+  const KLClustering<3> expected = KLKMeans<3>(options).fit(data);
+  PointCloudKLKMeans clustering;
+  clustering.setNumberOfClusters(7);
+  clustering.setInputCloud(cloud);
+  std::vector<pcl::PointIndices> clusters;
+  clustering.cluster(clusters);
+  ASSERT_EQ(clusters.size(), expected.references.size());
+  EXPECT_EQ(clustering.result().distortion, expected.distortion);
+  std::size_t members = 0;
+  for (std::size_t k = 0; k < clusters.size(); ++k) {
+    members += clusters[k].indices.size();
+    for (const auto i : clusters[k].indices) EXPECT_EQ(expected.labels[std::size_t(i)], int(k));
+    const PointGaussian& reference = clustering.getReferences()[k];
+    EXPECT_LT((reference.getVector3fMap().cast<double>() - expected.references[k].mean).norm(), 1e-5);
+    EXPECT_NEAR(double(reference.covariance[1]), expected.references[k].cov(0, 1), 1e-5);
+    EXPECT_NEAR(double(reference.weight), expected.references[k].weight, 1e-3);
+    EXPECT_EQ(reference.cell_side, 0.5f);
+    EXPECT_EQ(reference.occupancy, 10.0f);
+  }
+  EXPECT_EQ(members, cloud->size());
+}
+
+TEST(PointCloudKLKMeans, ClustersChosenPointsAndLeavesOutThoseThatAreNone) {
+  const auto cloud = finest();
+  (*cloud)[4].x = std::numeric_limits<float>::quiet_NaN();
+  const auto some = pcl::make_shared<pcl::Indices>();
+  for (int i = 0; i < 40; i += 2) some->push_back(i);
+  PointCloudKLKMeans clustering;
+  clustering.setNumberOfClusters(3);
+  clustering.setInputCloud(cloud);
+  clustering.setIndices(some);
+  std::vector<pcl::PointIndices> clusters;
+  clustering.cluster(clusters);
+  pcl::Indices all;
+  for (const pcl::PointIndices& cluster : clusters)
+    all.insert(all.end(), cluster.indices.begin(), cluster.indices.end());
+  std::sort(all.begin(), all.end());
+  some->erase(some->begin() + 2);
+  EXPECT_EQ(all, *some);
+}
+
+TEST(PointCloudKLKMeans, GivesNothingForWhatItCannotCluster) {
+  PointCloudKLKMeans clustering;
+  std::vector<pcl::PointIndices> clusters(3);
+  clustering.cluster(clusters);  // no cloud
+  EXPECT_TRUE(clusters.empty());
+  const auto cloud = finest();
+  clustering.setInputCloud(cloud);
+  clustering.setNumberOfClusters(0);
+  clustering.cluster(clusters);
+  EXPECT_TRUE(clusters.empty());
+  clustering.setNumberOfClusters(2);
+  (*cloud)[0].covariance[0] = -1.0f;
+  clustering.cluster(clusters);
+  EXPECT_TRUE(clusters.empty());
+  clustering.setInputCloud(pcl::make_shared<pcl::PointCloud<PointGaussian>>());
+  clustering.cluster(clusters);
+  EXPECT_TRUE(clusters.empty());
+}
+
+}  // namespace
+}  // namespace gaussmap
