@@ -2,4 +2,6 @@
 # Warnings for gaussmap's own code only: a user's build is never told how to treat warnings.
 add_library(gaussmap_warnings INTERFACE)
 target_compile_options(gaussmap_warnings INTERFACE
-  $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang>:-Wall -Wextra -Wpedantic -Wshadow -Wconversion>)
+  $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang>:-Wall -Wextra -Wpedantic -Wshadow -Wconversion>
+  # What -Wconversion does not mean to g++ either.
+  $<$<COMPILE_LANG_AND_ID:CXX,Clang>:-Wno-sign-conversion>)

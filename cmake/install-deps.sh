@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs the Debian packages that gaussmap is built and tested with. Works as root or through sudo,
-# says what it does, and does nothing when all are there. Usage: cmake/install-deps.sh
+# says what it does, and does nothing when all are there. Usage: cmake/install-deps.sh [--checks]
 set -euo pipefail
 
 packages=(
@@ -11,8 +11,13 @@ packages=(
   libpcl-dev                                               # the PCL edge
   libvtk9-dev libegl-dev libegl-mesa0 libx11-dev           # the viewer; Mesa draws pictures without a display
   libcli11-dev nlohmann-json3-dev                          # the command line
-  libgtest-dev libbenchmark-dev liboctomap-dev             # tests, benchmarks and a peer for them
+  libgtest-dev liboctomap-dev pcl-tools                    # tests; peers of the benchmarks
 )
+case "${1:-}" in
+  "") ;;
+  --checks) packages+=(git clang libclang-rt-14-dev clang-format clang-tidy cppcheck) ;;  # sanitizers, fuzzers, lint
+  *) echo "usage: cmake/install-deps.sh [--checks]" >&2; exit 2 ;;
+esac
 
 missing=()
 for package in "${packages[@]}"; do

@@ -5,7 +5,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 [[ ${1:-} != -* ]] || { echo "usage: test/lint.sh [FILE...]" >&2; exit 2; }
-./cmake/install-deps.sh
+./cmake/install-deps.sh --checks
 
 mapfile -t all < <(git ls-files '*.cpp' '*.h')
 clang-format --dry-run -Werror "${all[@]}"

@@ -7,10 +7,10 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-select=()
+select=() packages=()
 case "${1:-}" in
   "") preset=release ;;
-  --sanitize) preset=sanitize ;;
+  --sanitize) preset=sanitize packages=(--checks) ;;
   --threads)
     preset=threads
     select=(-R '[Tt]hread')
@@ -22,7 +22,7 @@ case "${1:-}" in
     ;;
 esac
 
-./cmake/install-deps.sh
+./cmake/install-deps.sh "${packages[@]}"
 launcher=$(command -v ccache || true)
 cmake --preset "$preset" -DCMAKE_CXX_COMPILER_LAUNCHER="$launcher" >/dev/null
 cmake --build "build/$preset" -j 2

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gaussmap/map/moment_grid.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <sstream>
@@ -57,6 +58,17 @@ GAUSSMAP_CLONES void finishAll(std::size_t size, std::uint32_t* hash) {
   for (std::size_t i = 0; i < size; ++i) hash[i] = finish(hash[i]);
 }
 
+/// 1 where another cell than that of the point before begins, else 0.
+template <int D>
+GAUSSMAP_CLONES void findBegins(const std::int32_t (*cell)[kBlock], std::size_t size, std::uint32_t* begins) {
+  begins[0] = 1;
+  for (std::size_t i = 1; i < size; ++i) {
+    std::int32_t differ = 0;
+    for (int axis = 0; axis < D; ++axis) differ |= cell[axis][i] ^ cell[axis][i - 1];
+    begins[i] = differ != 0;
+  }
+}
+
 /// A block on the lattice: what is left of the points is integers.
 template <int D>
 struct LatticeBlock {
@@ -64,6 +76,7 @@ struct LatticeBlock {
   alignas(64) std::int32_t cell[D][kBlock];
   alignas(64) std::int32_t offset[D][kBlock];  // from the cell's centre [steps]
   alignas(64) std::uint32_t hash[kBlock];
+  alignas(64) std::uint32_t begins[kBlock];  // 1 where another cell than that of the point before begins
 
   /// True if every point was finite and in range.
   bool snap(const PointBlock<D>& block, double resolution) {
@@ -76,6 +89,7 @@ struct LatticeBlock {
     std::memset(hash, 0, size * sizeof hash[0]);
     for (int axis = 0; axis < D; ++axis) mixAxis(cell[axis], size, hash);
     finishAll(size, hash);
+    findBegins<D>(cell, size, begins);
     return true;
   }
 
@@ -83,11 +97,6 @@ struct LatticeBlock {
     CellKey<D> key;
     for (std::size_t axis = 0; axis < D; ++axis) key[axis] = cell[axis][i];
     return key;
-  }
-  bool sameCell(std::size_t i, std::size_t j) const {
-    bool same = true;
-    for (int axis = 0; axis < D; ++axis) same &= cell[axis][i] == cell[axis][j];
-    return same;
   }
 };
 
@@ -167,20 +176,14 @@ std::size_t MomentGrid<D>::add(const PointBlock<D>& block) {
   for (std::size_t i = 0; i < lattice.size; ++i) {
     __builtin_prefetch(&slots_[lattice.hash[i] & mask]);
     starts[runs] = static_cast<std::uint32_t>(i);
-    runs += i == 0 || !lattice.sameCell(i, i - 1);
+    runs += lattice.begins[i];
   }
   starts[runs] = static_cast<std::uint32_t>(lattice.size);
   if (point_count_ > CellMoments<D>::kMostPoints - std::int64_t{kBlock}) requireRoom(*this, lattice, starts, runs);
   std::uint32_t candidates[kBlock];
   for (std::size_t run = 0; run < runs; ++run) {
-    const std::uint32_t hash = lattice.hash[starts[run]];
-    std::size_t position = hash & mask;
-    while (slots_[position].hash != hash && slots_[position].index != kEmpty) position = (position + 1) & mask;
-    candidates[run] = slots_[position].index;
-    if (candidates[run] == kEmpty) continue;
-    const char* home = reinterpret_cast<const char*>(&cell(candidates[run]));
-    __builtin_prefetch(home, 1);
-    __builtin_prefetch(home + sizeof(Cell) - 1, 1);
+    candidates[run] = candidate(lattice.hash[starts[run]]);
+    if (candidates[run] != kEmpty) prefetch(cell(candidates[run]));
   }
   CellMoments<D>* cells[kBlock];
   for (std::size_t run = 0; run < runs; ++run) {
@@ -211,17 +214,44 @@ const CellMoments<D>* MomentGrid<D>::find(const CellKey<D>& key) const {
 }
 
 template <int D>
+std::uint32_t MomentGrid<D>::candidate(std::uint32_t hash) const {
+  const std::size_t mask = slots_.size() - 1;
+  std::size_t position = hash & mask;
+  while (slots_[position].hash != hash && slots_[position].index != kEmpty) position = (position + 1) & mask;
+  return slots_[position].index;
+}
+
+template <int D>
+void MomentGrid<D>::prefetch(const Cell& cell) {
+  const char* const begin = reinterpret_cast<const char*>(&cell);
+  __builtin_prefetch(begin, 1);
+  __builtin_prefetch(begin + sizeof(Cell) - 1, 1);
+}
+
+template <int D>
 void MomentGrid<D>::merge(const MomentGrid& other) {
   if (other.resolution_ != resolution_) {
     std::ostringstream text;
     text << "cells of " << resolution_ << " m and of " << other.resolution_ << " m cannot be added exactly";
     throw std::invalid_argument(text.str());
   }
-  constexpr std::size_t kAhead = 16;
-  for (std::size_t i = 0; i < other.size(); ++i) {
-    if (i + kAhead < other.size()) __builtin_prefetch(&slots_[hashOf<D>(other[i + kAhead].key) & (slots_.size() - 1)]);
-    add(other[i].key, other[i].moments);
+  // As in add(block): what the look-ups of a batch need is on its way before they are made.
+  constexpr std::size_t kBatch = 64;
+  std::uint32_t hash[kBatch];
+  for (std::size_t first = 0; first < other.size(); first += kBatch) {
+    const std::size_t count = std::min(kBatch, other.size() - first), mask = slots_.size() - 1;
+    for (std::size_t i = 0; i < count; ++i) {
+      hash[i] = hashOf<D>(other[first + i].key);
+      __builtin_prefetch(&slots_[hash[i] & mask]);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t index = candidate(hash[i]);
+      if (index != kEmpty) prefetch(cell(index));
+    }
+    for (std::size_t i = 0; i < count; ++i)
+      findOrInsert(other[first + i].key, hash[i]).moments += other[first + i].moments;
   }
+  point_count_ += other.point_count_;
 }
 
 template <int D>

@@ -59,16 +59,19 @@ void measureCommands(const Options& options, const std::filesystem::path& work, 
 
 void runOthers(const Options& options, const std::filesystem::path& work, Table& table) {
   const std::string folder = std::filesystem::path(options.build) / "test" / "benchmark";
-  const std::string kitti = options.data + "/kitti_6scans", office = options.data + "/rgbd_office_single";
   std::vector<Command> commands = {{"gaussmap_refinement_speed"},
-                                   {"gaussmap_registration_benchmark"},
+                                   {"gaussmap_registration_benchmark", "--starts", "3", "--basin", "3"},
                                    {"gaussmap_normals_benchmark"},
                                    {"gaussmap_segments_benchmark", "--only-speed"}};
+  if (!options.data.empty()) {
+    for (const std::size_t i : {std::size_t{1}, std::size_t{3}})
+      commands[i].insert(commands[i].end(), {"--data", options.data});
+    for (const char* cloud : {"kitti_6scans", "rgbd_office_single"}) commands[2].push_back(options.data + "/" + cloud);
+  }
   for (Command& command : commands) {
     const std::string json = work / (command.front() + ".json");
     command.front() = folder + "/" + command.front();
     command.insert(command.end(), {"--json", json});
-    if (!options.data.empty()) command.insert(command.end(), {"--data", options.data});
     measureCommandsInTurn({command}, 1);
     addJson(json, table);
   }

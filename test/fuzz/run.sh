@@ -6,6 +6,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 seconds=${1:-30}
+./cmake/install-deps.sh --checks
 build=build/sanitize
 launcher=$(command -v ccache || true)
 cmake --preset sanitize -DCMAKE_CXX_COMPILER_LAUNCHER="$launcher" >/dev/null

@@ -79,6 +79,9 @@ class MomentGrid {
   static constexpr std::uint32_t kEmpty = 0xFFFFFFFFu;
 
   Cell& cell(std::uint32_t index) { return chunks_[index / kChunk][index % kChunk]; }
+  /// The first cell with that hash, most likely the one looked for; kEmpty if there is none.
+  std::uint32_t candidate(std::uint32_t hash) const;
+  static void prefetch(const Cell& cell);
   Cell& findOrInsert(const CellKey<D>& key, std::uint32_t hash);
   void grow();
 
