@@ -78,10 +78,14 @@ int main(int argc, char** argv) try {
   Options options;
   options.build = std::filesystem::canonical("/proc/self/exe").parent_path().parent_path().parent_path();
   bool is_table = false;
-  std::vector<std::size_t> growth;
+  bool is_growth = false;
+  std::vector<std::size_t> growth = {1000000, 5000000, 20000000, 80000000};
   std::string json;
   app.add_flag("--table", is_table, "everything, beside the peers");
-  app.add_option("--growth", growth, "time and memory for these numbers of points, fitted")->expected(0, -1);
+  app.add_flag("--growth", is_growth, "time and memory against points and cells, fitted");
+  app.add_option("--growth-points", growth, "numbers of points for it")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   app.add_option("--points", options.points, "of the simulated drive; goals are those of the first number")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -90,7 +94,7 @@ int main(int argc, char** argv) try {
   app.add_option("--runs", options.runs, "the median counts")->check(CLI::Range(1, 1000))->capture_default_str();
   app.add_option("--json", json, "write the figures for machines");
   CLI11_PARSE(app, argc, argv);
-  if (!is_table && app.count("--growth") == 0) {
+  if (!is_table && !is_growth) {
     std::fprintf(stderr, "gaussmap_benchmark: --table or --growth\n");
     return 2;
   }
@@ -100,8 +104,7 @@ int main(int argc, char** argv) try {
     fill(options, work.path, table);
     runOthers(options, work.path, table);
   }
-  if (app.count("--growth") > 0)
-    measureGrowth(growth.empty() ? std::vector<std::size_t>{1000000, 5000000, 20000000, 80000000} : growth, table);
+  if (is_growth) measureGrowth(growth, table);
   if (!json.empty()) writeJson(json, table);
   return 0;
 } catch (const std::exception& error) {

@@ -15,8 +15,10 @@ struct Measured {
 
 /// Runs every work `runs` times, in turn, each time in a child process of its own: what one leaves in memory or caches
 /// is no other's gain. The median of the times, the largest memory. The works must not have started threads before.
-/// Throws std::runtime_error if a child fails.
-std::vector<Measured> measureInTurn(const std::vector<std::function<double()>>& works, int runs);
+/// Warm: the time is that of a second call in the same process. Throws std::runtime_error if a child fails.
+enum class Start { Cold, Warm };
+std::vector<Measured> measureInTurn(const std::vector<std::function<double()>>& works, int runs,
+                                    Start start = Start::Cold);
 
 /// The same for whole commands: program and arguments, output thrown away.
 std::vector<Measured> measureCommandsInTurn(const std::vector<std::vector<std::string>>& commands, int runs);

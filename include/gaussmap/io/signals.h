@@ -10,8 +10,7 @@ namespace gaussmap {
 /// - a file that is cut off by somebody else while it is read (SIGBUS in mapped memory) removes them too, prints
 ///   `<program>: <file>: was cut off ...` on stderr and ends the process with exit code 1;
 /// - an exception that nobody can catch (one of a thread that starts another when there is no memory left) does the
-/// same
-///   with its message;
+///   same with its message;
 /// - a write beyond the limit on the size of files (SIGXFSZ) fails like one on a full disk: FileError.
 /// `program` must live as long as the process.
 void handleSignals(const char* program);
