@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cmath>
+#include <Eigen/QR>
 #include <cstdio>
 
 #include "gaussmap/gaussian/random.h"
@@ -23,15 +23,18 @@ Cloud::Ptr spread(const Cloud& drive) {
   return wide;
 }
 
-/// The slope of log y over log x: 1 = linear.
-double exponent(const std::vector<double>& x, const std::vector<double>& y) {
-  double sx = 0, sy = 0, sxx = 0, sxy = 0;
-  const auto n = static_cast<double>(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double a = std::log(x[i]), b = std::log(y[i]);
-    sx += a, sy += b, sxx += a * a, sxy += a * b;
-  }
-  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+/// values ~ a x + b y, least squares of the relative errors; `worst` = the largest of these that is left.
+struct Fit {
+  double a = 0.0, b = 0.0, worst = 0.0;
+};
+
+Fit fit(const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& values) {
+  Eigen::MatrixXd rows(x.size(), 2);
+  for (std::size_t i = 0; i < x.size(); ++i)
+    rows.row(static_cast<Eigen::Index>(i)) << x[i] / values[i], y[i] / values[i];
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(rows.rows());
+  const Eigen::Vector2d both = rows.colPivHouseholderQr().solve(ones);
+  return {both[0], both[1], (rows * both - ones).cwiseAbs().maxCoeff()};
 }
 
 void grow(const char* name, const std::vector<std::size_t>& counts, bool is_wide, Table& table) {
@@ -54,9 +57,15 @@ void grow(const char* name, const std::vector<std::size_t>& counts, bool is_wide
     seconds.push_back(measured.seconds);
     megabytes.push_back(measured.megabytes);
   }
-  if (counts.size() < 2) return;
-  table.add(Figure{"growth", name, "time ~ points to the power of", "", exponent(points, seconds), 0.0});
-  table.add(Figure{"growth", name, "memory ~ cells to the power of", "", exponent(cells, megabytes), 0.0});
+  if (counts.size() < 3) return;
+  const Fit time = fit(points, cells, seconds);
+  table.add(Figure{"growth, time", name, "a point", "ns", 1e9 * time.a, 0.0});
+  table.add(Figure{"growth, time", name, "a cell", "ns", 1e9 * time.b, 0.0});
+  table.add(Figure{"growth, time", name, "farthest from this line", "%", 100.0 * time.worst, 0.0});
+  const Fit memory = fit(cells, std::vector<double>(cells.size(), 1.0), megabytes);
+  table.add(Figure{"growth, memory", name, "a cell", "bytes", 1048576.0 * memory.a, 0.0});
+  table.add(Figure{"growth, memory", name, "besides", "MB", memory.b, 0.0});
+  table.add(Figure{"growth, memory", name, "farthest from this line", "%", 100.0 * memory.worst, 0.0});
 }
 
 }  // namespace
