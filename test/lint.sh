@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 [[ ${1:-} != -* ]] || { echo "usage: test/lint.sh [FILE...]" >&2; exit 2; }
 ./cmake/install-deps.sh --checks
 
-mapfile -t all < <(git ls-files '*.cpp' '*.h')
+mapfile -t all < <(git ls-files '*.cpp' '*.h' '*.hpp')
 clang-format --dry-run -Werror "${all[@]}"
 echo "clang-format: ${#all[@]} files as they should be"
 

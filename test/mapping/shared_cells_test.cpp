@@ -28,7 +28,8 @@ Points patch(double half, double height, double slope) {
 }
 
 /// The surface that is found for the cell of a point that an object was in, nothing else known of it.
-std::optional<Surface<3>> surfaceAt(const Points& points, const Vector<3>& object, const SharedCellOptions& options = {}) {
+std::optional<Surface<3>> surfaceAt(const Points& points, const Vector<3>& object,
+                                    const SharedCellOptions& options = {}) {
   Points all = points;
   all.push_back(object);
   const GaussianMap<3> map = mapOf(all);

@@ -40,8 +40,8 @@ void checkPcdFields(const std::vector<PcdOutput>& fields);
 /// Writes a binary PCD file (version 0.7) with any fields, whole or not at all (AtomicFile): one row of points, or rows
 /// of `width` points if that is not 0.
 /// The same input gives the same bytes. An empty cloud is written too, though PCL refuses to read one.
-/// Throws std::invalid_argument as checkPcdFields(), for a field without data, a pose with a fault, or rows that are not
-/// full; FileError if the file cannot be written.
+/// Throws std::invalid_argument as checkPcdFields(), for a field without data, a pose with a fault, or rows that are
+/// not full; FileError if the file cannot be written.
 void writePcd(const std::filesystem::path& path, std::size_t points, const std::vector<PcdOutput>& fields,
               const std::optional<Pose>& viewpoint = std::nullopt, std::size_t width = 0);
 
