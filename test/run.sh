@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs, builds, runs tests. Usage: test/run.sh [--sanitize | --threads]
 #   (nothing)   all tests, optimised
-#   --sanitize  all tests under address, leak and undefined-behaviour sanitizers (clang, without the viewer)
+#   --sanitize  all tests under address, leak and undefined-behaviour sanitizers (clang; without PCL and the viewer)
 #   --threads   the tests that use threads under the thread sanitizer
 set -euo pipefail
 cd "$(dirname "$0")/.."
