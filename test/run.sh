@@ -26,4 +26,4 @@ esac
 launcher=$(command -v ccache || true)
 cmake --preset "$preset" -DCMAKE_CXX_COMPILER_LAUNCHER="$launcher" >/dev/null
 cmake --build "build/$preset" -j 2
-ctest --test-dir "build/$preset" -j 2 --output-on-failure --progress "${select[@]}"
+ctest --test-dir "build/$preset" -j 2 --timeout 600 --output-on-failure --progress "${select[@]}"
