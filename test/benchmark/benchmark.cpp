@@ -91,7 +91,7 @@ int main(int argc, char** argv) try {
       ->capture_default_str();
   app.add_option("--data", options.data, "directory with kitti_6scans, rgbd_office_single, carmen_intel, ...")
       ->check(CLI::ExistingDirectory);
-  app.add_option("--runs", options.runs, "the shortest counts")->check(CLI::Range(1, 1000))->capture_default_str();
+  app.add_option("--runs", options.runs, "the median counts")->check(CLI::Range(1, 1000))->capture_default_str();
   app.add_option("--json", json, "write the figures for machines");
   CLI11_PARSE(app, argc, argv);
   if (!is_table && !is_growth) {

@@ -12,15 +12,11 @@
 #include <cstdio>
 #include <exception>
 #include <fstream>
-#include <limits>
 #include <sstream>
 #include <stdexcept>
 
 namespace gaussmap::benchmark {
 namespace {
-
-constexpr int kMostCalls = 10;       // warm ones
-constexpr double kLongEnough = 0.5;  // of them together [s]
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -44,13 +40,9 @@ double statusMegabytes(const std::string& name) {
     measured.seconds = now() - start;
     measured.megabytes = std::max(0.0, statusMegabytes("VmHWM") - before);
     if (how == Start::Warm) {
-      const double first = now();
-      measured.seconds = std::numeric_limits<double>::infinity();
-      for (int i = 0; i < kMostCalls && (i == 0 || now() - first < kLongEnough); ++i) {
-        start = now();
-        work();
-        measured.seconds = std::min(measured.seconds, now() - start);
-      }
+      start = now();
+      work();
+      measured.seconds = now() - start;
     }
   } catch (const std::exception& error) {
     std::fprintf(stderr, "gaussmap_benchmark: %s\n", error.what());
@@ -106,15 +98,14 @@ std::vector<Measured> inTurn(const std::vector<Work>& works, int runs, const Run
   std::vector<std::vector<Measured>> all(works.size());
   for (int i = 0; i < runs; ++i)
     for (std::size_t w = 0; w < works.size(); ++w) all[w].push_back(run(works[w]));
-  std::vector<Measured> best;
-  for (const std::vector<Measured>& of : all) {
-    best.push_back(of.front());
-    for (const Measured& one : of) {
-      best.back().seconds = std::min(best.back().seconds, one.seconds);
-      best.back().megabytes = std::max(best.back().megabytes, one.megabytes);
-    }
+  std::vector<Measured> medians;
+  for (std::vector<Measured>& of : all) {
+    std::sort(of.begin(), of.end(), [](const Measured& a, const Measured& b) { return a.seconds < b.seconds; });
+    Measured median = of[of.size() / 2];
+    for (const Measured& one : of) median.megabytes = std::max(median.megabytes, one.megabytes);
+    medians.push_back(median);
   }
-  return best;
+  return medians;
 }
 
 }  // namespace

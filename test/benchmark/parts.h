@@ -27,7 +27,7 @@ struct Options {
   std::vector<std::size_t> points = {5000000, 20000000};  ///< of the simulated drive
   std::string data;                                       ///< directory with kitti_6scans and so on; empty: none
   std::string build;                                      ///< directory of the other programs of the benchmark
-  int runs = 3;                                           ///< the shortest counts; one for more than ten million points
+  int runs = 3;                                           ///< the median counts; one for more than ten million points
 };
 
 /// The finest scale beside pcl::VoxelGridCovariance, std::unordered_map and OctoMap's hits: time, memory.
