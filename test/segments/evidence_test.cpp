@@ -22,9 +22,11 @@ Memory lookAtOneHalf(const SegmentFitterOptions& options) {
   const auto see = [&](double from) {
     for (double x = from; x < 4.0; x += 0.05) {
       std::vector<ObservationPoint> points;
-      for (int i = 0; i < options.particles.samples; ++i)
-        points.push_back(
-            {Vector<2>(x + 0.02 * random.normal(), 0.02 * random.normal()), 1.0 / options.particles.samples});
+      for (int i = 0; i < options.particles.samples; ++i) {
+        // One after the other: compilers differ in the order of arguments.
+        const double across = 0.02 * random.normal(), along = x + 0.02 * random.normal();
+        points.push_back({Vector<2>(along, across), 1.0 / options.particles.samples});
+      }
       keeper->add(points, evidence);
     }
   };
