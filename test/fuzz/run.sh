@@ -18,7 +18,7 @@ cmake --build "$build" -j 2 --target "${targets[@]/#/fuzz_}"
 mkdir -p "$build/findings"
 fuzz() {  # target
   mkdir -p "$build/corpus/$1"
-  "$build/test/fuzz/fuzz_$1" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=2048 -max_len=65536 \
+  "$build/test/fuzz/fuzz_$1" -seed=1 -max_total_time="$seconds" -timeout=60 -rss_limit_mb=2048 -max_len=65536 \
     -artifact_prefix="$build/findings/$1-" "$build/corpus/$1" "test/fuzz/corpus/$1" >"$build/$1.log" 2>&1 ||
     { tail -40 "$build/$1.log" >&2; echo "fuzz_$1: a finding, see $build/findings" >&2; return 1; }
   echo "fuzz_$1: $(grep -E '^Done|DONE' "$build/$1.log" | tail -1)"
