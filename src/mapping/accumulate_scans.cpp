@@ -66,20 +66,15 @@ PointCounts acceptPoints(const ScanSource& scan, const AccumulateOptions& option
   return counts;
 }
 
-/// Runs body(first) on the blocks of a scan, several at a time. A thread that waits for the last of them does not
-/// begin another scan meanwhile: the number of open scans stays that of the threads.
+/// Runs body(first) on the blocks of a scan, several at a time: the number of open scans stays that of the threads.
 template <typename Body>
 void forBlocks(const PcdReader& reader, int threads, const Body& body) {
   const std::size_t step = kBlocksPerTask * PointBlock<3>::kCapacity;
   const std::size_t tasks = (reader.size() + step - 1) / step;
-  const auto task = [&](std::size_t index) {
+  parallelForWithin(tasks, threads, [&](std::size_t index) {
     const std::size_t last = std::min(reader.size(), (index + 1) * step);
     for (std::size_t first = index * step; first < last; first += PointBlock<3>::kCapacity) body(first);
-  };
-  if (threads == 1)
-    for (std::size_t i = 0; i < tasks; ++i) task(i);
-  else
-    tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t{0}, tasks, task); });
+  });
 }
 
 /// Sums and counts of one thread.
