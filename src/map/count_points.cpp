@@ -6,36 +6,49 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/clones.h"
 #include "common/parallel.h"
 
 namespace gaussmap {
+namespace {
 
-template <int D>
-MomentGrid<D> countBlocks(double resolution, std::size_t count,
-                          const std::function<void(std::size_t, PointBlock<D>&)>& fill, int threads) {
-  constexpr std::size_t kStep = 128 * PointBlock<D>::kCapacity;  // points a task
-  MomentGrid<D> all(resolution);
-  tbb::enumerable_thread_specific<MomentGrid<D>> partials(resolution);
-  parallelFor((count + kStep - 1) / kStep, threads, 1, [&](std::size_t task) {
-    MomentGrid<D>& moments = partials.local();
-    const std::size_t last = std::min(count, (task + 1) * kStep);
-    PointBlock<D> block;
-    for (std::size_t first = task * kStep; first < last; first += block.kCapacity) {
+/// One array an axis. Strides that compilers know of let them load and turn several points at once.
+template <std::size_t kStride>
+inline void spread(const float* points, std::size_t stride, PointBlock<3>& block) {
+  if (kStride > 0) stride = kStride;
+  for (std::size_t i = 0; i < block.size; ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      block.coordinate[axis][i] = static_cast<double>(points[i * stride + axis]);
+}
+
+GAUSSMAP_CLONES void fill(const PointsView& points, std::size_t first, PointBlock<3>& block) {
+  if (points.stride == 4)
+    spread<4>(points[first], points.stride, block);
+  else
+    spread<0>(points[first], points.stride, block);
+}
+
+}  // namespace
+
+MomentGrid<3> countPoints(double resolution, const PointsView& points, int threads) {
+  constexpr std::size_t kTask = 128 * PointBlock<3>::kCapacity;
+  MomentGrid<3> all(resolution);
+  tbb::enumerable_thread_specific<MomentGrid<3>> partials(resolution);
+  parallelFor((points.count + kTask - 1) / kTask, threads, 1, [&](std::size_t task) {
+    MomentGrid<3>& moments = partials.local();
+    const std::size_t last = std::min(points.count, (task + 1) * kTask);
+    PointBlock<3> block;
+    for (std::size_t first = task * kTask; first < last; first += block.kCapacity) {
       block.size = std::min(last - first, block.kCapacity);
-      fill(first, block);
+      fill(points, first, block);
       moments.add(block);
     }
   });
-  for (MomentGrid<D>& partial : partials) {
+  for (MomentGrid<3>& partial : partials) {
     if (partial.size() > all.size()) std::swap(partial, all);
-    all.merge(partial);
+    all.merge(partial, threads);
   }
   return all;
 }
-
-template MomentGrid<2> countBlocks<2>(double, std::size_t, const std::function<void(std::size_t, PointBlock<2>&)>&,
-                                      int);
-template MomentGrid<3> countBlocks<3>(double, std::size_t, const std::function<void(std::size_t, PointBlock<3>&)>&,
-                                      int);
 
 }  // namespace gaussmap

@@ -71,7 +71,7 @@ void checkLinks(const GaussianMap<D>& map, int s) {
   for (std::size_t cell = 0; cell < coarse.keys.size(); ++cell) {
     const IndexRange children = map.childCells(cell, s), clusters = map.gaussiansOf(cell, s);
     for (std::size_t child = children.first; child < children.last; ++child) {
-      if (map.grid().ancestor(finer.keys[child], s - 1, s) != coarse.keys[cell])
+      if (!map.grid().isParent(coarse.keys[cell], finer.keys[child]))
         refuse(s - 1, "cell " + toString<D>(finer.keys[child]) + " stands under the wrong parent");
       if (child > children.first && !(finer.keys[child - 1] < finer.keys[child]))
         refuse(s - 1, "cell " + toString<D>(finer.keys[child]) + " is out of order or there twice");

@@ -86,10 +86,15 @@ Vector<D> Grid<D>::centre(const CellKey<D>& key, int scale) const {
 
 template <int D>
 Vector<D> Grid<D>::centreInParent(const CellKey<D>& key, int scale) const {
+  return centreInParent(key, ancestor(key, scale, scale + 1), scale);
+}
+
+template <int D>
+Vector<D> Grid<D>::centreInParent(const CellKey<D>& key, const CellKey<D>& parent, int scale) const {
   Vector<D> offset;
   for (int axis = 0; axis < D; ++axis) {
-    const std::int64_t coordinate = key[static_cast<std::size_t>(axis)];
-    const std::int64_t digit = coordinate - floorDivide(coordinate, options_.ratio) * options_.ratio;
+    const auto i = static_cast<std::size_t>(axis);
+    const std::int64_t digit = key[i] - std::int64_t{parent[i]} * options_.ratio;
     offset(axis) = 0.5 * static_cast<double>(2 * digit + 1 - options_.ratio) * side(scale);
   }
   return offset;

@@ -20,30 +20,44 @@ struct Extent {
   std::uint64_t count = 1;  // of ancestors at the coarsest scale along this axis
 };
 
+struct Levels {
+  std::uint64_t ratio = 2;
+  int count = 0;           // of scales above the finest
+  std::uint64_t span = 1;  // cells along the side of one of the coarsest scale
+};
+
+/// What one coordinate, counted from its axis' lowest ancestor, adds to the number of a cell.
+template <int D, typename Code>
+Code axisCode(std::size_t axis, std::uint64_t coordinate, const std::array<Extent, D>& extents, const Levels& levels) {
+  Code code = 0;
+  for (std::size_t a = 0; a < D; ++a) code = code * extents[a].count + (a == axis ? coordinate / levels.span : 0);
+  std::uint64_t rest = coordinate % levels.span, span = levels.span;
+  for (int level = 0; level < levels.count; ++level) {
+    span /= levels.ratio;
+    for (std::size_t a = 0; a < D; ++a) code = code * levels.ratio + (a == axis ? rest / span : 0);
+    rest %= span;
+  }
+  return code;
+}
+
 /// One number a cell whose order is key order: the coarsest ancestor counted x, y, z, then at each finer scale the
-/// place among its parent's children, counted the same way.
+/// place among its parent's children, counted the same way. What an axis adds comes from a table where that is shorter
+/// than the divisions of all cells.
 template <int D, typename Code>
 std::vector<Code> orderCodes(const std::vector<CellKey<D>>& keys, const std::array<Extent, D>& extents,
-                             std::uint64_t ratio, int levels, std::uint64_t span) {
-  std::vector<Code> codes(keys.size());
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    std::array<std::uint64_t, D> rest;  // coordinate within the coarsest ancestor
-    Code code = 0;
-    for (std::size_t axis = 0; axis < D; ++axis) {
-      const auto from_lowest =
-          static_cast<std::uint64_t>(keys[i][axis] - extents[axis].lowest * static_cast<std::int64_t>(span));
-      code = code * extents[axis].count + from_lowest / span;
-      rest[axis] = from_lowest % span;
+                             const Levels& levels) {
+  std::vector<Code> codes(keys.size()), table;
+  for (std::size_t axis = 0; axis < D; ++axis) {
+    const std::int64_t lowest = extents[axis].lowest * static_cast<std::int64_t>(levels.span);
+    const auto coordinate = [&](std::size_t i) { return static_cast<std::uint64_t>(keys[i][axis] - lowest); };
+    const std::uint64_t length = extents[axis].count * levels.span;
+    if (length > keys.size()) {
+      for (std::size_t i = 0; i < keys.size(); ++i) codes[i] += axisCode<D, Code>(axis, coordinate(i), extents, levels);
+      continue;
     }
-    std::uint64_t child_span = span;
-    for (int level = 0; level < levels; ++level) {
-      child_span /= ratio;
-      for (std::size_t axis = 0; axis < D; ++axis) {
-        code = code * ratio + rest[axis] / child_span;
-        rest[axis] %= child_span;
-      }
-    }
-    codes[i] = code;
+    table.resize(length);
+    for (std::uint64_t k = 0; k < length; ++k) table[k] = axisCode<D, Code>(axis, k, extents, levels);
+    for (std::size_t i = 0; i < keys.size(); ++i) codes[i] += table[coordinate(i)];
   }
   return codes;
 }
@@ -86,12 +100,9 @@ std::vector<std::uint32_t> keyOrder(const std::vector<CellKey<D>>& keys, int rat
     extents[axis].count = static_cast<std::uint64_t>(floorDivide((*high)[axis], span) - extents[axis].lowest + 1);
     bits += std::log2(static_cast<double>(extents[axis].count)) + std::log2(static_cast<double>(span));
   }
-  const auto unsigned_ratio = static_cast<std::uint64_t>(ratio);
-  const auto unsigned_span = static_cast<std::uint64_t>(span);
-  if (bits < 63.0)
-    return sortedByRadix(orderCodes<D, std::uint64_t>(keys, extents, unsigned_ratio, levels, unsigned_span),
-                         static_cast<int>(bits) + 1);
-  const std::vector<LongCode> codes = orderCodes<D, LongCode>(keys, extents, unsigned_ratio, levels, unsigned_span);
+  const Levels above{static_cast<std::uint64_t>(ratio), levels, static_cast<std::uint64_t>(span)};
+  if (bits < 63.0) return sortedByRadix(orderCodes<D, std::uint64_t>(keys, extents, above), static_cast<int>(bits) + 1);
+  const std::vector<LongCode> codes = orderCodes<D, LongCode>(keys, extents, above);
   std::vector<std::uint32_t> order(keys.size());
   std::iota(order.begin(), order.end(), 0u);
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return codes[a] < codes[b]; });

@@ -8,6 +8,8 @@
 #include <stdexcept>
 
 #include "common/clones.h"
+#include "common/pages.h"
+#include "common/parallel.h"
 #include "map/add_runs.h"
 #include "map/lattice.h"
 
@@ -16,6 +18,13 @@ namespace {
 
 constexpr std::size_t kBlock = PointBlock<3>::kCapacity;
 constexpr std::size_t kFirstSlots = 1024;
+
+/// Fuller, probes get long and their ends hard to predict. A table that stays in the second-level cache can do with
+/// more room than one where a page or a cache line more costs time as well.
+bool isFull(std::size_t cells, std::size_t slots) {
+  constexpr std::size_t kRoomySlots = std::size_t{1} << 17;
+  return slots <= kRoomySlots ? cells * 4 >= slots : cells * 8 >= slots * 5;
+}
 
 /// One axis of a block on the lattice. Returns 0 if every coordinate fits.
 GAUSSMAP_CLONES std::uint64_t snapAxis(const double* coordinates, std::size_t size, double steps_per_metre,
@@ -153,10 +162,11 @@ void requireRoom(const MomentGrid<D>& grid, const LatticeBlock<D>& block, const 
 }  // namespace
 
 template <int D>
-MomentGrid<D>::MomentGrid(double resolution) : resolution_(resolution), slots_(kFirstSlots, Slot{0, kEmpty}) {
+MomentGrid<D>::MomentGrid(double resolution) : resolution_(resolution) {
   if (!(std::isfinite(resolution) && resolution > 0.0))
     throw std::invalid_argument("resolution = " + std::to_string(resolution) +
                                 ": the side of a cell must be a positive number of metres");
+  reserve(0);
 }
 
 template <int D>
@@ -172,7 +182,7 @@ std::size_t MomentGrid<D>::add(const PointBlock<D>& block) {
   // in three passes, so that the memory they need is on its way while the passes before it work.
   std::uint32_t starts[kBlock + 1];
   std::size_t runs = 0;
-  const std::size_t mask = slots_.size() - 1;  // a table that grows below leaves stale hints, no wrong ones
+  const std::size_t mask = slot_count_ - 1;  // a table that grows below leaves stale hints, no wrong ones
   for (std::size_t i = 0; i < lattice.size; ++i) {
     __builtin_prefetch(&slots_[lattice.hash[i] & mask]);
     starts[runs] = static_cast<std::uint32_t>(i);
@@ -204,18 +214,23 @@ void MomentGrid<D>::add(const CellKey<D>& key, const CellMoments<D>& moments) {
 
 template <int D>
 const CellMoments<D>* MomentGrid<D>::find(const CellKey<D>& key) const {
-  const std::uint32_t hash = hashOf<D>(key);
-  const std::size_t mask = slots_.size() - 1;
+  const std::uint32_t index = indexOf(key, hashOf<D>(key));
+  return index == kEmpty ? nullptr : &(*this)[index].moments;
+}
+
+template <int D>
+std::uint32_t MomentGrid<D>::indexOf(const CellKey<D>& key, std::uint32_t hash) const {
+  const std::size_t mask = slot_count_ - 1;
   for (std::size_t position = hash & mask; slots_[position].index != kEmpty; position = (position + 1) & mask) {
-    const Cell& found = (*this)[slots_[position].index];
-    if (slots_[position].hash == hash && same<D>(found.key, key)) return &found.moments;
+    const Slot slot = slots_[position];
+    if (slot.hash == hash && same<D>((*this)[slot.index].key, key)) return slot.index;
   }
-  return nullptr;
+  return kEmpty;
 }
 
 template <int D>
 std::uint32_t MomentGrid<D>::candidate(std::uint32_t hash) const {
-  const std::size_t mask = slots_.size() - 1;
+  const std::size_t mask = slot_count_ - 1;
   std::size_t position = hash & mask;
   while (slots_[position].hash != hash && slots_[position].index != kEmpty) position = (position + 1) & mask;
   return slots_[position].index;
@@ -229,17 +244,19 @@ void MomentGrid<D>::prefetch(const Cell& cell) {
 }
 
 template <int D>
-void MomentGrid<D>::merge(const MomentGrid& other) {
+void MomentGrid<D>::merge(const MomentGrid& other, int threads) {
   if (other.resolution_ != resolution_) {
     std::ostringstream text;
     text << "cells of " << resolution_ << " m and of " << other.resolution_ << " m cannot be added exactly";
     throw std::invalid_argument(text.str());
   }
-  // As in add(block): what the look-ups of a batch need is on its way before they are made.
+  // No two cells of the other grid are the same: threads add to different ones of ours, and none is entered meanwhile.
+  // As in add(block), what the look-ups of a batch need is on its way before they are made.
   constexpr std::size_t kBatch = 64;
-  std::uint32_t hash[kBatch];
-  for (std::size_t first = 0; first < other.size(); first += kBatch) {
-    const std::size_t count = std::min(kBatch, other.size() - first), mask = slots_.size() - 1;
+  std::vector<std::uint64_t> unknown((other.size() + kBatch - 1) / kBatch);  // a bit a cell
+  parallelFor(unknown.size(), threads, 64, [&](std::size_t batch) {
+    const std::size_t first = batch * kBatch, count = std::min(kBatch, other.size() - first), mask = slot_count_ - 1;
+    std::uint32_t hash[kBatch];
     for (std::size_t i = 0; i < count; ++i) {
       hash[i] = hashOf<D>(other[first + i].key);
       __builtin_prefetch(&slots_[hash[i] & mask]);
@@ -248,48 +265,84 @@ void MomentGrid<D>::merge(const MomentGrid& other) {
       const std::uint32_t index = candidate(hash[i]);
       if (index != kEmpty) prefetch(cell(index));
     }
-    for (std::size_t i = 0; i < count; ++i)
-      findOrInsert(other[first + i].key, hash[i]).moments += other[first + i].moments;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t known = indexOf(other[first + i].key, hash[i]);
+      if (known != kEmpty)
+        cell(known).moments += other[first + i].moments;
+      else
+        unknown[batch] |= std::uint64_t{1} << i;
+    }
+  });
+  std::vector<std::size_t> places(unknown.size());  // of a batch's first cell that is new
+  std::size_t total = size_;
+  for (std::size_t batch = 0; batch < unknown.size(); ++batch) {
+    places[batch] = total;
+    total += static_cast<std::size_t>(__builtin_popcountll(unknown[batch]));
+  }
+  reserve(total);
+  std::vector<std::uint32_t> hashes(total - size_);
+  parallelFor(unknown.size(), threads, 64, [&](std::size_t batch) {
+    std::size_t place = places[batch];
+    for (std::uint64_t bits = unknown[batch]; bits != 0; bits &= bits - 1, ++place) {
+      const Cell& source = other[batch * kBatch + static_cast<std::size_t>(__builtin_ctzll(bits))];
+      hashes[place - size_] = hashOf<D>(source.key);
+      new (&cell(static_cast<std::uint32_t>(place))) Cell(source);
+    }
+  });
+  for (std::size_t first = 0; first < hashes.size(); first += kBatch) {
+    const std::size_t last = std::min(first + kBatch, hashes.size());
+    for (std::size_t i = first; i < last; ++i) __builtin_prefetch(&slots_[hashes[i] & (slot_count_ - 1)], 1);
+    for (std::size_t i = first; i < last; ++i) enter(hashes[i]);
   }
   point_count_ += other.point_count_;
 }
 
 template <int D>
 typename MomentGrid<D>::Cell& MomentGrid<D>::findOrInsert(const CellKey<D>& key, std::uint32_t hash) {
-  std::size_t mask = slots_.size() - 1;
-  std::size_t position = hash & mask;
-  for (; slots_[position].index != kEmpty; position = (position + 1) & mask) {
-    const Slot slot = slots_[position];
-    if (slot.hash == hash && same<D>(cell(slot.index).key, key)) return cell(slot.index);
-  }
-  if (size_ * 8 >= slots_.size() * 5) {  // fuller, probes get long and their ends hard to predict
-    grow();
-    return findOrInsert(key, hash);
-  }
-  if (size_ >= kEmpty) throw std::length_error("more than 2^32 - 1 occupied cells: take coarser cells");
-  if (size_ % kChunk == 0) chunks_.push_back(std::make_unique<Cell[]>(kChunk));
-  slots_[position] = {hash, static_cast<std::uint32_t>(size_)};
-  Cell& fresh = cell(static_cast<std::uint32_t>(size_++));
-  fresh.key = key;
-  return fresh;
+  const std::uint32_t known = indexOf(key, hash);
+  if (known != kEmpty) return cell(known);
+  reserve(size_ + 1);
+  Cell* const fresh = new (&cell(static_cast<std::uint32_t>(size_))) Cell{key, {}};
+  enter(hash);
+  return *fresh;
 }
 
 template <int D>
-void MomentGrid<D>::grow() {
-  std::vector<Slot> wider(slots_.size() * 2, Slot{0, kEmpty});
-  const std::size_t mask = wider.size() - 1;
-  for (const Slot& slot : slots_) {
-    if (slot.index == kEmpty) continue;
-    std::size_t position = slot.hash & mask;
+void MomentGrid<D>::enter(std::uint32_t hash) {
+  const std::size_t mask = slot_count_ - 1;
+  std::size_t position = hash & mask;
+  while (slots_[position].index != kEmpty) position = (position + 1) & mask;
+  slots_[position] = {hash, static_cast<std::uint32_t>(size_++)};
+}
+
+template <int D>
+void MomentGrid<D>::reserve(std::size_t cells) {
+  if (cells > kEmpty) throw std::length_error("more than 2^32 - 1 occupied cells: take coarser cells");
+  while (chunks_.size() * kChunk < cells)
+    chunks_.emplace_back(static_cast<Cell*>(allocatePages(kChunk * sizeof(Cell))));
+  std::size_t slot_count = std::max(slot_count_, kFirstSlots);
+  while (isFull(cells, slot_count)) slot_count *= 2;
+  if (slot_count > slot_count_) widen(slot_count);
+}
+
+template <int D>
+void MomentGrid<D>::widen(std::size_t slot_count) {
+  std::unique_ptr<Slot[], Free> wider(static_cast<Slot*>(allocatePages(slot_count * sizeof(Slot))));
+  std::uninitialized_fill_n(wider.get(), slot_count, Slot{0, kEmpty});
+  const std::size_t mask = slot_count - 1;
+  for (std::size_t i = 0; i < slot_count_; ++i) {
+    if (slots_[i].index == kEmpty) continue;
+    std::size_t position = slots_[i].hash & mask;
     while (wider[position].index != kEmpty) position = (position + 1) & mask;
-    wider[position] = slot;
+    wider[position] = slots_[i];
   }
   slots_ = std::move(wider);
+  slot_count_ = slot_count;
 }
 
 template <int D>
 std::size_t MomentGrid<D>::memoryBytes() const {
-  return chunks_.size() * kChunk * sizeof(Cell) + slots_.capacity() * sizeof(Slot);
+  return size_ * sizeof(Cell) + slot_count_ * sizeof(Slot);
 }
 
 template class MomentGrid<2>;

@@ -30,8 +30,10 @@ template <int D>
 void gatherUnder(const MapScale<D>& finer, const Grid<D>& grid, int finer_scale, IndexRange cells,
                  std::vector<Gaussian<D>>& out) {
   out.clear();
+  if (cells.first == cells.last) return;
+  const CellKey<D> parent = grid.ancestor(finer.keys[cells.first], finer_scale, finer_scale + 1);
   for (std::size_t cell = cells.first; cell < cells.last; ++cell) {
-    const Vector<D> shift = grid.centreInParent(finer.keys[cell], finer_scale);
+    const Vector<D> shift = grid.centreInParent(finer.keys[cell], parent, finer_scale);
     const IndexRange range = gaussiansOf(finer, cell);
     for (std::size_t index = range.first; index < range.last; ++index) {
       out.push_back(localGaussian(finer, grid, finer_scale, index));
@@ -50,8 +52,7 @@ MapScale<D> coarsen(MapScale<D>& finer, const Grid<D>& grid, int finer_scale) {
   std::vector<Gaussian<D>> children;
   for (std::size_t first = 0, last = 0; first < finer_cells; first = last) {
     const CellKey<D> key = grid.ancestor(finer.keys[first], finer_scale, finer_scale + 1);
-    for (last = first + 1; last < finer_cells; ++last)
-      if (grid.ancestor(finer.keys[last], finer_scale, finer_scale + 1) != key) break;
+    for (last = first + 1; last < finer_cells && grid.isParent(key, finer.keys[last]);) ++last;
     const std::uint32_t cell = index32(coarser.keys.size());
     for (std::size_t i = gaussiansOf(finer, first).first; i < gaussiansOf(finer, last - 1).last; ++i)
       finer.parent[i] = cell;

@@ -9,6 +9,7 @@
 #include <vtkTextProperty.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace gaussmap {
 namespace {
@@ -54,7 +55,8 @@ vtkSmartPointer<vtkActor2D> barOf(const Colouring& colouring, int height) {
     const Colour& colour = colouring.bar[static_cast<std::size_t>(i)];
     table->SetTableValue(i, colour[0] / 255.0, colour[1] / 255.0, colour[2] / 255.0);
   }
-  table->SetTableRange(colouring.low, colouring.high);
+  const auto label = [&](double end) { return std::abs(end) < 1e-6 * (colouring.high - colouring.low) ? 0.0 : end; };
+  table->SetTableRange(label(colouring.low), label(colouring.high));  // no -1.39e-17 where a floor is meant
   const auto bar = vtkSmartPointer<vtkScalarBarActor>::New();
   bar->SetNumberOfLabels(5);
   bar->SetLabelFormat("%-.3g");

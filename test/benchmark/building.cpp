@@ -15,8 +15,7 @@ namespace gaussmap::benchmark {
 namespace {
 
 MomentGrid<3> count(const Cloud& cloud, double side, int threads) {
-  return countPoints<3>(
-      side, cloud.size(), [&](std::size_t i) { return cloud[i].data; }, threads);
+  return countPoints(side, {cloud[0].data, cloud.size(), sizeof(pcl::PointXYZ) / sizeof(float)}, threads);
 }
 
 /// The exact sums alone: what a map keeps while it grows.

@@ -43,8 +43,8 @@ void grow(const char* name, const std::vector<std::size_t>& counts, bool is_wide
     Cloud::Ptr cloud = cloudOf(benchmark_input::streetPoints(count, 0, 1));
     if (is_wide) cloud = spread(*cloud);
     const auto work = [&] {
-      const MomentGrid<3> sums = countPoints<3>(
-          0.2, cloud->size(), [&](std::size_t i) { return (*cloud)[i].data; }, 1);
+      const MomentGrid<3> sums =
+          countPoints(0.2, {(*cloud)[0].data, cloud->size(), sizeof(pcl::PointXYZ) / sizeof(float)}, 1);
       return static_cast<double>(build<3>(sums, {0.2, 5, 3, 0.0}).cellCount(0));
     };
     const Measured measured = measureInTurn({work}, 3).front();

@@ -98,11 +98,8 @@ TEST(GaussianMap, IteratesInKeyOrder) {
     }
 }
 
-TEST(KeyOrder, SortsKeysTooFarApartForOneMachineWord) {
-  Random random(15);
-  std::vector<CellKey<3>> keys(2000);
-  for (CellKey<3>& key : keys)
-    for (std::int32_t& coordinate : key) coordinate = static_cast<std::int32_t>(random.bits());
+/// By the definition: ancestors from the coarsest scale down.
+void expectKeyOrder(const std::vector<CellKey<3>>& keys) {
   const std::vector<std::uint32_t> order = keyOrder<3>(keys, 10, 2);
   const Grid<3> grid({1.0, 10, 3, 0.0});
   std::set<std::uint32_t> seen(order.begin(), order.end());
@@ -112,6 +109,26 @@ TEST(KeyOrder, SortsKeysTooFarApartForOneMachineWord) {
     return std::array<CellKey<3>, 3>{grid.ancestor(key, 0, 2), grid.ancestor(key, 0, 1), key};
   };
   for (std::size_t i = 1; i < keys.size(); ++i) EXPECT_LE(path(i - 1), path(i));
+}
+
+TEST(KeyOrder, SortsKeysTooFarApartForOneMachineWord) {
+  Random random(15);
+  std::vector<CellKey<3>> keys(2000);
+  for (CellKey<3>& key : keys)
+    for (std::int32_t& coordinate : key) coordinate = static_cast<std::int32_t>(random.bits());
+  expectKeyOrder(keys);
+}
+
+TEST(KeyOrder, SortsAlongShortAndLongAxes) {
+  Random random(17);
+  for (const int long_axes : {0, 1, 2}) {
+    std::vector<CellKey<3>> keys(2000);
+    for (CellKey<3>& key : keys)
+      for (int axis = 0; axis < 3; ++axis)
+        key[std::size_t(axis)] =
+            static_cast<std::int32_t>(random.below(axis < long_axes ? 1000000 : 150)) - (axis == 1 ? 75 : 0);
+    expectKeyOrder(keys);
+  }
 }
 
 TEST(GaussianMap, FarFromTheOriginIsTheMapAtTheOriginShifted) {

@@ -5,6 +5,8 @@
 
 #include <limits>
 
+#include "gaussmap/gaussian/random.h"
+
 namespace gaussmap {
 namespace {
 
@@ -40,6 +42,27 @@ TEST(Grid, CentresOfChildrenLieRoundTheCentreOfTheParent) {
   EXPECT_EQ(grid.centre({-1, 3}, 0), (Vector<2>(-0.25, 1.75)));
   EXPECT_EQ(grid.centreInParent({-1, 3}, 0), (Vector<2>(0.25, 0.25)));
   EXPECT_EQ(grid.centre(grid.ancestor({-1, 3}, 0, 1), 1), (Vector<2>(-0.5, 1.5)));
+}
+
+TEST(Grid, KnowsParentsWithoutDividing) {
+  Random random(11);
+  for (const int ratio : {2, 3, 10, 1000}) {
+    const Grid<3> grid({0.1, ratio, 2, 0.0});
+    for (int trial = 0; trial < 10000; ++trial) {
+      CellKey<3> key, other;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const int extent = random.below(4) == 0 ? 2147483647 : 3 * ratio;
+        key[axis] = static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(2 * std::int64_t{extent} + 1)) -
+                                              static_cast<std::uint64_t>(extent));
+        other[axis] = random.below(3) == 0 ? key[axis] : static_cast<std::int32_t>(random.below(9)) - 4;
+      }
+      const CellKey<3> parent = grid.ancestor(key, 0, 1);
+      EXPECT_TRUE(grid.isParent(parent, key)) << toString<3>(key);
+      const CellKey<3> others = grid.ancestor(other, 0, 1);
+      EXPECT_EQ(grid.isParent(others, key), others == parent) << toString<3>(key) << toString<3>(other);
+      EXPECT_EQ(grid.centreInParent(key, parent, 0), grid.centreInParent(key, 0));
+    }
+  }
 }
 
 TEST(Grid, CellOfItsCentreIsTheCell) {

@@ -56,11 +56,22 @@ class Grid {
   /// The cell of the coarser scale `to` that holds a cell of scale `from`; floor, also for negative coordinates.
   CellKey<D> ancestor(const CellKey<D>& key, int from, int to) const;
 
+  /// Is a cell the parent, at the next coarser scale, of another? No division: what is asked of every cell of a map.
+  bool isParent(const CellKey<D>& parent, const CellKey<D>& key) const {
+    bool is_parent = true;
+    for (std::size_t axis = 0; axis < D; ++axis)
+      is_parent &= static_cast<std::uint64_t>(key[axis] - std::int64_t{parent[axis]} * options_.ratio) <
+                   static_cast<std::uint64_t>(options_.ratio);
+    return is_parent;
+  }
+
   /// Centre of a cell [m, map frame].
   Vector<D> centre(const CellKey<D>& key, int scale) const;
 
   /// Centre of a cell minus the centre of its parent [m]: exact wherever the cell is.
   Vector<D> centreInParent(const CellKey<D>& key, int scale) const;
+  /// The same where the parent is known.
+  Vector<D> centreInParent(const CellKey<D>& key, const CellKey<D>& parent, int scale) const;
 
  private:
   MapOptions options_;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <memory>
 #include <vector>
 
@@ -13,7 +14,8 @@
 namespace gaussmap {
 
 /// The finest scale while it grows: points in, exact moments per cell out.
-/// Open addressing over 8-byte slots, cells in fixed chunks: nothing is allocated per cell and a cell never moves.
+/// Open addressing over 8-byte slots, cells in fixed chunks: nothing is allocated per cell and a cell never moves. A
+/// moved-from grid can only be destroyed or assigned to.
 template <int D>
 class MomentGrid {
  public:
@@ -63,11 +65,11 @@ class MomentGrid {
   /// Adds moments to one cell.
   void add(const CellKey<D>& key, const CellMoments<D>& moments);
 
-  /// Adds all cells of another grid of the same resolution: exact, so any order of merging gives the same sums.
-  /// Throws std::invalid_argument if the resolutions differ.
-  void merge(const MomentGrid& other);
+  /// Adds all cells of another grid of the same resolution, on `threads` threads (0 = all): exact, so any order of
+  /// merging gives the same sums. Throws std::invalid_argument if the resolutions differ.
+  void merge(const MomentGrid& other, int threads = 1);
 
-  /// Bytes held, allocated ones.
+  /// Bytes held: of chunks, what cells have taken so far.
   std::size_t memoryBytes() const;
 
  private:
@@ -75,21 +77,30 @@ class MomentGrid {
     std::uint32_t hash;   // of the key: most slots are told apart without a look at their cell
     std::uint32_t index;  // kEmpty or the cell's
   };
-  static constexpr std::size_t kChunk = 4096;
+  struct Free {
+    void operator()(void* memory) const { std::free(memory); }
+  };
+  static constexpr std::size_t kChunk = 65536;  // whole huge pages; what is not touched takes no memory
   static constexpr std::uint32_t kEmpty = 0xFFFFFFFFu;
 
   Cell& cell(std::uint32_t index) { return chunks_[index / kChunk][index % kChunk]; }
   /// The first cell with that hash, most likely the one looked for; kEmpty if there is none.
   std::uint32_t candidate(std::uint32_t hash) const;
   static void prefetch(const Cell& cell);
+  std::uint32_t indexOf(const CellKey<D>& key, std::uint32_t hash) const;  // kEmpty if it is not there
   Cell& findOrInsert(const CellKey<D>& key, std::uint32_t hash);
-  void grow();
+  /// Room for so many cells in chunks and slots.
+  void reserve(std::size_t cells);
+  /// Makes a cell that is behind the last one the last one.
+  void enter(std::uint32_t hash);
+  void widen(std::size_t slot_count);
 
   double resolution_;
   std::size_t size_ = 0;
   std::int64_t point_count_ = 0;
-  std::vector<std::unique_ptr<Cell[]>> chunks_;
-  std::vector<Slot> slots_;
+  std::size_t slot_count_ = 0;  // a power of two
+  std::vector<std::unique_ptr<Cell[], Free>> chunks_;
+  std::unique_ptr<Slot[], Free> slots_;
 };
 
 }  // namespace gaussmap

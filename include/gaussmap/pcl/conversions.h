@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "gaussmap/map/count_points.h"
 #include "gaussmap/map/gaussian_map.h"
 #include "gaussmap/mapping/build.h"
 #include "gaussmap/pcl/point_gaussian.h"
@@ -20,13 +21,14 @@ pcl::PointCloud<PointGaussian> toPointCloud(const GaussianMapOctree& map, std::o
 /// The map such a cloud describes, see fromRecords(). Throws std::invalid_argument, saying what, if it describes none.
 GaussianMapOctree fromPointCloud(const pcl::PointCloud<PointGaussian>& cloud);
 
-/// The map of a cloud in the map frame; non-finite points are left out. Any point type with x, y, z.
+/// The map of a cloud in the map frame, made on `threads` threads (0 = all), which never show in it; non-finite points
+/// are left out. Any point type with x, y, z.
 /// Throws std::invalid_argument on unusable options, std::out_of_range for a point too far for the cells.
 template <typename PointT>
-GaussianMapOctree buildMap(const pcl::PointCloud<PointT>& cloud, const MapOptions& options = {}) {
-  MomentGrid<3> moments(Grid<3>(options).options().resolution);
-  moments.addPoints(cloud.size(), [&](std::size_t i) { return cloud[i].getVector3fMap(); });
-  return build<3>(moments, options);
+GaussianMapOctree buildMap(const pcl::PointCloud<PointT>& cloud, const MapOptions& options = {}, int threads = 0) {
+  static_assert(sizeof(PointT) % sizeof(float) == 0);
+  const PointsView points{cloud.empty() ? nullptr : cloud[0].data, cloud.size(), sizeof(PointT) / sizeof(float)};
+  return build<3>(countPoints(Grid<3>(options).options().resolution, points, threads), options);
 }
 
 }  // namespace gaussmap
