@@ -1,24 +1,26 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs, builds, runs tests. Usage: test/run.sh [--sanitize | --threads]
+# Installs, builds, runs tests. Usage: test/run.sh [--sanitize | --threads] [options of ctest]
 #   (nothing)   all tests, optimised
 #   --sanitize  all tests under address, leak and undefined-behaviour sanitizers (clang; without PCL and the viewer)
 #   --threads   the tests that use threads under the thread sanitizer
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-select=() packages=()
+preset=release select=() packages=()
 case "${1:-}" in
-  "") preset=release ;;
-  --sanitize) preset=sanitize packages=(--checks) ;;
+  --sanitize)
+    shift
+    preset=sanitize packages=(--checks)
+    ;;
   --threads)
-    preset=threads
-    select=(-R '[Tt]hread')
+    shift
+    preset=threads select=(-R '[Tt]hread')
     export TSAN_OPTIONS="suppressions=$PWD/test/tsan.supp halt_on_error=1"
     ;;
-  *)
-    echo "usage: test/run.sh [--sanitize | --threads]" >&2
-    exit 2
+  --help | -h)
+    sed -n '3,6p' "$0"
+    exit
     ;;
 esac
 
@@ -26,4 +28,4 @@ esac
 launcher=$(command -v ccache || true)
 cmake --preset "$preset" -DCMAKE_CXX_COMPILER_LAUNCHER="$launcher" >/dev/null
 cmake --build "build/$preset" -j 2
-ctest --test-dir "build/$preset" -j 2 --timeout 600 --output-on-failure --progress "${select[@]}"
+ctest --test-dir "build/$preset" -j 2 --timeout 600 --output-on-failure --progress "${select[@]}" "$@"

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <mutex>
 #include <stdexcept>
+#include <utility>
 
 #include "common/parallel.h"
 #include "gaussmap/io/error.h"
@@ -126,10 +127,8 @@ AccumulatedScans accumulateScans(const std::vector<ScanSource>& scans, const Acc
   AccumulatedScans all{MomentGrid<3>(options.resolution), {}};
   for (Partial& partial : partials) {
     all.counts += partial.counts;
-    if (all.moments.empty())
-      all.moments = std::move(partial.moments);
-    else
-      all.moments.merge(partial.moments);
+    if (partial.moments.size() > all.moments.size()) std::swap(partial.moments, all.moments);
+    all.moments.merge(partial.moments, options.threads);
   }
   return all;
 }

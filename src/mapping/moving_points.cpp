@@ -64,7 +64,7 @@ MomentGrid<3> MovingPoints::State::stillPoints(const std::function<void(std::siz
     progress(++done);
   });
   MomentGrid<3> all(map.grid().side(0));
-  for (const MomentGrid<3>& partial : partials) all.merge(partial);
+  for (const MomentGrid<3>& partial : partials) all.merge(partial, options.evidence.threads);
   return all;
 }
 
