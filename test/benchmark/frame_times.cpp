@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// gaussmap_frame_times MAP: how long a picture takes while a view of a map's scale turns, and when it stands, with the
+// driver that draws named: what `gaussmap view` feels like. Without a display too, then by software.
+#include <vtkCamera.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "gaussmap/io/map_file.h"
+#include "gaussmap/viewer/glyphs.h"
+#include "viewer/off_screen_window.h"
+#include "viewer/viewer_parts.h"
+
+namespace gaussmap {
+namespace {
+
+constexpr int kWidth = 1200, kHeight = 800;
+
+double medianMilliseconds(vtkRenderWindow& window, vtkRenderer& renderer, int pictures) {
+  std::vector<double> times;
+  for (int i = 0; i < pictures; ++i) {
+    renderer.GetActiveCamera()->Azimuth(360.0 / pictures);
+    renderer.ResetCameraClippingRange();
+    const auto start = std::chrono::steady_clock::now();
+    window.Render();
+    window.WaitForCompletion();
+    times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+  }
+  std::nth_element(times.begin(), times.begin() + pictures / 2, times.end());
+  return times[static_cast<std::size_t>(pictures / 2)];
+}
+
+std::string driverOf(vtkRenderWindow& window) {
+  std::istringstream lines(window.ReportCapabilities());
+  for (std::string line; std::getline(lines, line);)
+    if (line.rfind("OpenGL renderer string:", 0) == 0) return line.substr(25);
+  return "unknown";
+}
+
+void measure(const char* path) {
+  Viewer::Parts parts;
+  parts.scene.map = loadMap<3>(path);
+  const GaussianMap<3> map = *parts.map();
+  parts.origin = middleOf(map);
+  for (int scale = scaleToShow(map); scale < map.scales(); ++scale) {
+    parts.options.scale = scale;
+    parts.is_aimed = false;
+    parts.build(kWidth, kHeight);
+    const vtkSmartPointer<vtkRenderWindow> window = makeOffScreenWindow();
+    window->SetSize(kWidth, kHeight);
+    window->AddRenderer(parts.renderer);
+    window->Render();
+    if (scale == scaleToShow(map)) std::printf("%s, %d x %d\n", driverOf(*window).c_str(), kWidth, kHeight);
+    parts.setMoving(true);
+    const double moving = medianMilliseconds(*window, *parts.renderer, 20);
+    parts.setMoving(false);
+    const double still = medianMilliseconds(*window, *parts.renderer, 5);
+    std::printf("scale %d, %zu Gaussians: %.1f ms a picture while it turns, %.1f ms when it stands\n", scale,
+                map.gaussianCount(scale), moving, still);
+    window->RemoveRenderer(parts.renderer);
+  }
+}
+
+}  // namespace
+}  // namespace gaussmap
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: %s MAP\n", argv[0]);
+    return 2;
+  }
+  try {
+    gaussmap::measure(argv[1]);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}
