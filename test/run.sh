@@ -18,9 +18,9 @@ case "${1:-}" in
     preset=threads select=(-R '[Tt]hread')
     export TSAN_OPTIONS="suppressions=$PWD/test/tsan.supp halt_on_error=1"
     ;;
-  --help | -h)
-    sed -n '3,6p' "$0"
-    exit
+  --*)
+    sed -n '3,6p' "$0" >&2
+    exit 2
     ;;
 esac
 
