@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/pages.h"
+
 namespace gaussmap {
 
 /// Bits an axis has in a Morton code.
@@ -33,8 +35,10 @@ struct MortonItem {
   std::uint32_t index;
 };
 
+using MortonItems = std::vector<MortonItem, PagesAllocator<MortonItem>>;
+
 /// Sorts by code, keeping the order of equal ones. `spare` grows to `count`.
-inline void sortByCode(MortonItem* items, std::size_t count, std::vector<MortonItem>& spare) {
+inline void sortByCode(MortonItem* items, std::size_t count, MortonItems& spare) {
   constexpr std::size_t kDigits = 2048;  // 11 bits of the code at once
   constexpr std::size_t kFewItems = 2000;
   if (count < kFewItems) {

@@ -26,4 +26,23 @@ inline void* allocatePages(std::size_t bytes) {
   return memory;
 }
 
+/// Of vectors in such memory, whose elements are left as they are by resize().
+template <typename T>
+struct PagesAllocator {
+  using value_type = T;
+
+  PagesAllocator() = default;
+  template <typename U>
+  PagesAllocator(const PagesAllocator<U>&) {}
+
+  T* allocate(std::size_t count) { return static_cast<T*>(allocatePages(count * sizeof(T))); }
+  void deallocate(T* memory, std::size_t) { std::free(memory); }
+  template <typename U>
+  void construct(U* place) {
+    ::new (static_cast<void*>(place)) U;
+  }
+  friend bool operator==(const PagesAllocator&, const PagesAllocator&) { return true; }
+  friend bool operator!=(const PagesAllocator&, const PagesAllocator&) { return false; }
+};
+
 }  // namespace gaussmap

@@ -18,7 +18,7 @@ constexpr double kNoExtent = 1e-200;  // [m]; squares below it are 0
 struct PointTree::Builder {
   const std::vector<Vector<3>>& points;
   std::vector<Node>& nodes;
-  std::vector<MortonItem> items, spare;
+  MortonItems items, spare;
 
   void addLeaf(std::size_t first, std::size_t last, std::size_t distinct) {
     nodes.push_back({{}, {}, std::uint32_t(first), std::uint32_t(last - first), 0, std::uint32_t(distinct)});
@@ -62,7 +62,7 @@ struct PointTree::Builder {
 
 PointTree::PointTree(const std::vector<Vector<3>>& points) {
   if (points.empty()) return;
-  Builder builder{points, nodes_, std::vector<MortonItem>(points.size()), {}};
+  Builder builder{points, nodes_, MortonItems(points.size()), {}};
   for (std::size_t i = 0; i < points.size(); ++i) builder.items[i].index = std::uint32_t(i);
   nodes_.reserve(points.size() / 4);
   builder.sortAndSplit(0, points.size());

@@ -12,6 +12,7 @@
 
 #include "common/morton.h"
 #include "gaussmap/mapping/point_normals.h"
+#include "mapping/plane_batch.h"
 
 namespace gaussmap {
 
@@ -49,8 +50,8 @@ inline bool isFinite(const float* p) {
 
 /// Finite points in Morton order.
 struct Sorted {
-  std::vector<MortonItem> items;
-  std::vector<std::array<float, 4>> points;  // x y z 1
+  MortonItems items;
+  std::vector<std::array<float, 4>, PagesAllocator<std::array<float, 4>>> points;  // x y z 1, and padding
 
   Sorted(const PointsView& view, const Cube& cube) {
     const double per_metre = cube.cellsPerMetre();
@@ -58,9 +59,9 @@ struct Sorted {
     for (std::size_t i = 0; i < view.count; ++i)
       if (isFinite(view[i]) && cube.contains(view[i]))
         items.push_back({cube.codeOf(view[i], per_metre), std::uint32_t(i)});
-    std::vector<MortonItem> spare;
+    MortonItems spare;
     sortByCode(items.data(), items.size(), spare);
-    points.resize(items.size());
+    points.resize(items.size() + PlaneSums::kPadding);
     for (std::size_t i = 0; i < items.size(); ++i) {
       const float* const p = view[items[i].index];
       points[i] = {p[0], p[1], p[2], 1.0f};
@@ -69,25 +70,25 @@ struct Sorted {
 };
 
 /// Borders of the octants of a range of sorted items at a level (shift = 3 (level - 1)): 9 indices.
-inline std::array<std::uint32_t, 9> octantsOf(const std::vector<MortonItem>& items, Range range, int shift) {
+inline std::array<std::uint32_t, 9> octantsOf(const MortonItems& items, Range range, int shift) {
   std::array<std::uint32_t, 9> border;
-  const auto octant = [&](std::uint32_t i) { return std::uint32_t(items[i].code >> shift & 7); };
-  if (range.size() > 48) {
-    border[0] = range.first;
-    for (std::uint32_t k = 1; k < 8; ++k) {
-      const auto begin = items.begin();
-      border[k] =
-          std::uint32_t(std::partition_point(begin + border[k - 1], begin + range.last,
-                                             [&](const MortonItem& item) { return (item.code >> shift & 7) < k; }) -
-                        begin);
-    }
-    border[8] = range.last;
+  border[0] = range.first;
+  if (range.size() < 128) {
+    std::uint64_t counts = 0;  // a byte an octant
+    for (std::uint32_t i = range.first; i < range.last; ++i)
+      counts += std::uint64_t{1} << 8 * (items[i].code >> shift & 7);
+    const std::uint64_t ends = counts * 0x0101010101010101ull;
+    for (std::uint32_t k = 0; k < 8; ++k) border[k + 1] = range.first + std::uint32_t(ends >> 8 * k & 255);
     return border;
   }
-  std::uint32_t k = 0;
-  for (std::uint32_t i = range.first; i < range.last; ++i)
-    for (const std::uint32_t own = octant(i); k <= own; ++k) border[k] = i;
-  for (; k < 9; ++k) border[k] = range.last;
+  for (std::uint32_t k = 1; k < 8; ++k) {
+    const auto begin = items.begin();
+    border[k] =
+        std::uint32_t(std::partition_point(begin + border[k - 1], begin + range.last,
+                                           [&](const MortonItem& item) { return (item.code >> shift & 7) < k; }) -
+                      begin);
+  }
+  border[8] = range.last;
   return border;
 }
 
@@ -121,9 +122,12 @@ inline Cube withoutStrays(const Cube& all, const PointsView& surface) {
   if (axes[0].size() < 100) return all;
   Eigen::Array3d low, high;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    std::sort(axes[axis].begin(), axes[axis].end());
-    low[Eigen::Index(axis)] = double(axes[axis][axes[axis].size() / 100]);
-    high[Eigen::Index(axis)] = double(axes[axis][axes[axis].size() - 1 - axes[axis].size() / 100]);
+    const auto few = std::ptrdiff_t(axes[axis].size() / 100);
+    const auto begin = axes[axis].begin(), end = axes[axis].end(), lower = begin + few, upper = end - 1 - few;
+    std::nth_element(begin, lower, end);
+    std::nth_element(lower, upper, end);
+    low[Eigen::Index(axis)] = double(*lower);
+    high[Eigen::Index(axis)] = double(*upper);
   }
   const double extent = (high - low).maxCoeff();
   Cube cube;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mapping/plane_batch.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "common/clones.h"
@@ -56,27 +58,57 @@ GAUSSMAP_CLONES void solveAll(PlaneBatch& batch, double rounding) {
   }
 }
 
-GAUSSMAP_CLONES void addAll(const std::array<float, 4>* points, const PlaneRanges& ranges, PlaneSums& sums) {
-  double x[4] = {}, y[4] = {}, z[4] = {};
-  const std::array<float, 4>& first = points[ranges.first[0]];
-  const double origin[4] = {double(first[0]), double(first[1]), double(first[2]), 0.0};
+using Point = std::array<float, 4>;
+using Floats = float __attribute__((vector_size(32)));
+using Doubles = double __attribute__((vector_size(64)));  // two points
+
+/// Points of many ranges one after another, for one loop over all: a loop for each, of a length that is as good as
+/// random, would cost more than its sums.
+constexpr std::size_t kTogether = 256;
+
+struct Products {
+  Doubles origin, x{}, y{}, z{};
+};
+
+inline __attribute__((always_inline)) void addPairs(const Point* points, std::size_t count, Products& sums) {
+  Doubles x = sums.x, y = sums.y, z = sums.z;
+  for (std::size_t i = 0; i < count; i += 2) {
+    Floats pair;
+    std::memcpy(&pair, points + i, sizeof pair);
+    const Doubles p = __builtin_convertvector(pair, Doubles) - sums.origin;
+    x += __builtin_shufflevector(p, p, 0, 0, 0, 0, 4, 4, 4, 4) * p;
+    y += __builtin_shufflevector(p, p, 1, 1, 1, 1, 5, 5, 5, 5) * p;
+    z += __builtin_shufflevector(p, p, 2, 2, 2, 2, 6, 6, 6, 6) * p;
+  }
+  sums.x = x, sums.y = y, sums.z = z;
+}
+
+GAUSSMAP_CLONES void addAll(const Point* points, const PlaneRanges& ranges, PlaneSums& sums) {
+  constexpr std::uint32_t kCopied = PlaneSums::kPadding;
+  Point together[kTogether + kCopied];
+  const Point& about = points[ranges.first(0)];
+  const double ox = double(about[0]), oy = double(about[1]), oz = double(about[2]);
+  Products products{{ox, oy, oz, 0.0, ox, oy, oz, 0.0}};
+  std::size_t size = 0;
   std::uint32_t count = 0;
-  for (std::size_t range = 0; range < ranges.size; ++range) {
-    count += ranges.last[range] - ranges.first[range];
-    for (std::uint32_t i = ranges.first[range]; i < ranges.last[range]; ++i) {
-      double p[4];
-      for (std::size_t axis = 0; axis < 4; ++axis) p[axis] = double(points[i][axis]) - origin[axis];
-      for (std::size_t axis = 0; axis < 4; ++axis) {
-        x[axis] += p[0] * p[axis];
-        y[axis] += p[1] * p[axis];
-        z[axis] += p[2] * p[axis];
-      }
+  for (std::size_t range = 0; range < ranges.size(); ++range) {
+    const std::uint32_t last = ranges.last(range);
+    count += last - ranges.first(range);
+    for (std::uint32_t i = ranges.first(range); i < last; i += kCopied) {
+      std::memcpy(together + size, points + i, kCopied * sizeof(Point));
+      size += std::min(last - i, kCopied);
+      if (size <= kTogether - kCopied) continue;
+      addPairs(together, size & ~std::size_t{1}, products);
+      together[0] = together[size - 1];
+      size &= 1;
     }
   }
+  together[size] = {about[0], about[1], about[2], 0.0f};  // adds nothing
+  addPairs(together, size, products);
   for (std::size_t axis = 0; axis < 4; ++axis) {
-    sums.product[axis] = x[axis];
-    sums.product[4 + axis] = y[axis];
-    sums.product[8 + axis] = z[axis];
+    sums.product[axis] = products.x[axis] + products.x[axis + 4];
+    sums.product[4 + axis] = products.y[axis] + products.y[axis + 4];
+    sums.product[8 + axis] = products.z[axis] + products.z[axis + 4];
   }
   sums.count = count;
 }

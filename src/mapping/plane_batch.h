@@ -8,29 +8,43 @@
 namespace gaussmap {
 
 /// Ranges of points that one plane goes through.
-struct PlaneRanges {
+class PlaneRanges {
+ public:
   static constexpr std::size_t kCapacity = 81;
-  std::array<std::uint32_t, kCapacity> first, last;
-  std::size_t size = 0;
 
-  /// Joins it to the one before if it follows that.
-  void add(std::uint32_t from, std::uint32_t to) {
-    if (size > 0 && last[size - 1] == from) {
-      last[size - 1] = to;
-      return;
-    }
-    first[size] = from;
-    last[size++] = to;
+  std::size_t size() const { return size_; }
+  std::uint32_t first(std::size_t i) const { return first_[i + 1]; }
+  std::uint32_t last(std::size_t i) const { return last_[i + 1]; }
+  void clear() {
+    end_ = 0xFFFFFFFFu;
+    size_ = 0;
   }
+  /// Joins it to the one before if it follows that: without a branch, which would be guessed wrongly too often. Returns
+  /// its size.
+  std::uint32_t add(std::uint32_t from, std::uint32_t to) {
+    const bool is_joined = from == end_;
+    start_ = is_joined ? start_ : from;
+    end_ = to;
+    size_ += !is_joined;
+    first_[size_] = start_;
+    last_[size_] = end_;
+    return to - from;
+  }
+
+ private:
+  std::array<std::uint32_t, kCapacity + 1> first_, last_;  // from the second entry on
+  std::uint32_t start_ = 0, end_ = 0xFFFFFFFFu;            // of the last range
+  std::size_t size_ = 0;
 };
 
 /// Sums over points, about one of them: x times x y z 1, y times the same, z times the same, and their number.
 struct PlaneSums {
   std::array<double, 12> product{};
   double count = 0.0;
+  static constexpr std::size_t kPadding = 8;
 };
 
-/// `points`: x y z 1 each. At least one range, none empty.
+/// `points`: x y z 1 each, and kPadding more that are not counted. At least one range, none empty.
 PlaneSums sumUp(const std::array<float, 4>* points, const PlaneRanges& ranges);
 
 /// Planes through many sets of points at once, in vector registers.

@@ -22,7 +22,13 @@ namespace {
 constexpr double kWorthAFinerBlock = 2.5;  // times min_points: with fewer, finer blocks hardly ever have enough
 constexpr std::size_t kParts = 64;         // of a level, for threads
 constexpr std::size_t kGrain = 512;
-constexpr int kMostMinPoints = 1000;  // below Lanes::kMost
+constexpr int kMostMinPoints = 1000;
+
+/// Of one level, or a part of it.
+struct OpenCells {
+  std::vector<Open> cells;
+  std::vector<Near> near;
+};
 
 class Descent {
  public:
@@ -45,25 +51,28 @@ class Descent {
       return without_;
     }
     cells_.resize(1);
-    cells_[0].points = all;
+    cells_[0].borders[8] = all.last;
     wanted_ = std::vector<std::atomic<std::uint8_t>>(1);
     wanted_[0] = 1;
-    std::vector<std::vector<Open>> open(1), next;
-    open[0].push_back({{0, std::uint32_t(queries_.items.size())}, {}});
-    open[0][0].near.fill(kNoCell);
-    open[0][0].near[13] = 0;
+    std::vector<OpenCells> open(1), next;
+    open[0].cells.push_back({{0, std::uint32_t(queries_.items.size())}, 0, 1});
+    open[0].near.push_back({0, kMiddle});
     for (int level = kMortonBits; level > 0 && !open.empty(); --level) {
       split(3 * (level - 1));
-      if (open.size() == 1 && open[0].size() > kParts) open = cut(std::move(open[0]));
-      next.assign(open.size(), {});
-      parallelFor(open.size(), options_.threads, 1, [&](std::size_t part) {
+      const std::size_t parts = open.size() == 1 && open[0].cells.size() > kParts ? kParts : open.size();
+      next.assign(parts, {});
+      parallelFor(parts, options_.threads, 1, [&](std::size_t part) {
+        const bool is_cut = parts != open.size();
+        const OpenCells& from = open[is_cut ? 0 : part];
+        const std::size_t size = from.cells.size();
+        const std::size_t first = is_cut ? size * part / parts : 0, last = is_cut ? size * (part + 1) / parts : size;
         Writer writer(*this);
-        for (const Open& cell : open[part]) visit(cell, level, writer, next[part]);
+        for (std::size_t i = first; i < last; ++i) visit(from, from.cells[i], level, writer, next[part]);
         writer.flush();
       });
       open.clear();
-      for (std::vector<Open>& part : next)
-        if (!part.empty()) open.push_back(std::move(part));
+      for (OpenCells& part : next)
+        if (!part.cells.empty()) open.push_back(std::move(part));
       cells_.swap(finer_cells_);
       wanted_.swap(finer_wanted_);
     }
@@ -112,97 +121,69 @@ class Descent {
     write(none, 0, {0, std::uint32_t(queries_.items.size())});
   }
 
-  static std::vector<std::vector<Open>> cut(std::vector<Open> open) {
-    std::vector<std::vector<Open>> parts(kParts);
-    for (std::size_t part = 0; part < kParts; ++part)
-      parts[part].assign(open.begin() + std::ptrdiff_t(open.size() * part / kParts),
-                         open.begin() + std::ptrdiff_t(open.size() * (part + 1) / kParts));
-    return parts;
-  }
-
   /// Makes the children of all cells that are wanted.
   void split(int shift) {
     const std::size_t count = cells_.size();
     parallelFor(count, options_.threads, kGrain, [&](std::size_t i) {
       if (!wanted_[i].load(std::memory_order_relaxed)) return;
       Cell& cell = cells_[i];
-      const auto borders = octantsOf(surface_.items, cell.points, shift);
+      cell.borders = octantsOf(surface_.items, cell.points(), shift);
       for (unsigned k = 0; k < 8; ++k) {
-        const std::uint32_t size = borders[k + 1] - borders[k];
-        cell.counts.add(k, std::min(size, Lanes::kMost));
-        cell.children = std::uint8_t(cell.children | unsigned(size > 0) << k);
+        const std::uint32_t has_points = cell.borders[k + 1] > cell.borders[k];
+        cell.children |= has_points << k;
       }
-      std::copy_n(borders.begin() + 1, 7, cell.ends.begin());
     });
     std::uint32_t total = 0;
     for (Cell& cell : cells_) {
       cell.first_child = total;
       total += kBitCount[cell.children];
     }
-    finer_cells_.resize(total);
+    finer_cells_.assign(total, {});
     finer_wanted_ = std::vector<std::atomic<std::uint8_t>>(total);
     parallelFor(count, options_.threads, kGrain, [&](std::size_t i) {
       const Cell& cell = cells_[i];
       std::uint32_t child = cell.first_child;
-      for (unsigned bits = cell.children; bits; bits &= bits - 1) {
-        finer_cells_[child] = Cell();
-        finer_cells_[child++].points = cell.octant(unsigned(__builtin_ctz(bits)));
+      for (std::uint32_t bits = cell.children; bits; bits &= bits - 1) {
+        const auto octant = std::size_t(__builtin_ctz(bits));
+        finer_cells_[child].borders[0] = cell.borders[octant];
+        finer_cells_[child++].borders[8] = cell.borders[octant + 1];
       }
     });
   }
 
-  void visit(const Open& open, int level, Writer& writer, std::vector<Open>& next) {
-    std::array<Lanes, 27> counts;
-    for (std::size_t i = 0; i < 27; ++i) counts[i] = open.near[i] == kNoCell ? Lanes() : cells_[open.near[i]].counts;
-    std::array<std::uint32_t, 9> borders;
-    if (!same_) borders = octantsOf(queries_.items, open.queries, 3 * (level - 1));
-    for (unsigned k = 0; k < 8; ++k) {
-      const Range queries = same_ ? cells_[open.near[13]].octant(k) : Range{borders[k], borders[k + 1]};
-      if (queries.size() == 0) continue;
-      Lanes in;
-      for (const Share& share : kBlocks.three[k]) in.addMasked(counts[share.cell], share.lanes);
-      const std::uint32_t three = in.total();
-      if (three >= enough_ && level > 1) {
-        next.push_back(finer(open, k, queries));
+  void visit(const OpenCells& from, const Open& open, int level, Writer& writer, OpenCells& next) {
+    const Near* const near = from.near.data() + open.first_near;
+    Surroundings around;
+    for (std::size_t i = 0; i < open.near_count; ++i) around.add(cells_[near[i].cell], near[i].place);
+    const auto borders = same_ ? around.middle().borders : octantsOf(queries_.items, open.queries, 3 * (level - 1));
+    unsigned with_queries = 0;
+    for (unsigned k = 0; k < 8; ++k) with_queries |= unsigned(borders[k + 1] > borders[k]) << k;
+    for (; with_queries; with_queries &= with_queries - 1) {
+      const auto k = unsigned(__builtin_ctz(with_queries));
+      const Range queries{borders[k], borders[k + 1]};
+      PlaneRanges ranges;
+      const std::uint64_t octants = around.three(k);
+      std::uint32_t count = around.gatherThree(k, octants, ranges);
+      if (count >= enough_ && level > 1) {
+        finer(around, k, octants, queries, next);
         continue;
       }
-      if (three < min_)
-        for (const Share& share : kBlocks.five[k]) in.addMasked(counts[share.cell], share.lanes);
-      PlaneRanges ranges;
-      if (in.total() >= min_) {
-        gather(ranges, open, kBlocks.three[k]);
-        if (three < min_) gather(ranges, open, kBlocks.five[k]);
-      } else {
-        for (const std::uint32_t cell : open.near)
-          if (cell != kNoCell) ranges.add(cells_[cell].points.first, cells_[cell].points.last);
+      if (count < min_) count += around.gatherFive(k, ranges);
+      if (count < min_) {
+        ranges.clear();
+        for (std::size_t i = 0; i < open.near_count; ++i)
+          ranges.add(cells_[near[i].cell].borders[0], cells_[near[i].cell].borders[8]);
       }
       writer.add(sumUp(surface_.points.data(), ranges), queries);
     }
   }
 
-  void gather(PlaneRanges& ranges, const Open& open, const std::vector<Share>& shares) const {
-    for (const Share& share : shares) {
-      if (open.near[share.cell] == kNoCell) continue;
-      const Cell& cell = cells_[open.near[share.cell]];
-      for (unsigned bits = cell.children & share.octants; bits; bits &= bits - 1) {
-        const Range points = cell.octant(unsigned(__builtin_ctz(bits)));
-        ranges.add(points.first, points.last);
-      }
-    }
-  }
-
-  Open finer(const Open& open, std::size_t octant, Range queries) {
-    Open child{queries, {}};
-    for (std::size_t i = 0; i < 27; ++i) {
-      const auto& [near, k] = kBlocks.near[octant][i];
-      child.near[i] = kNoCell;
-      if (open.near[near] == kNoCell) continue;
-      const Cell& cell = cells_[open.near[near]];
-      if (!(cell.children >> k & 1u)) continue;
-      child.near[i] = cell.child(k);
-      finer_wanted_[child.near[i]].store(1, std::memory_order_relaxed);
-    }
-    return child;
+  void finer(const Surroundings& around, unsigned k, std::uint64_t octants, Range queries, OpenCells& next) {
+    const std::size_t first = next.near.size();
+    around.append(k, octants, next.near);
+    next.cells.push_back({queries, std::uint32_t(first), std::uint32_t(next.near.size() - first)});
+    for (std::size_t i = first; i < next.near.size(); ++i)
+      finer_wanted_[next.near[i].cell].store(1, std::memory_order_relaxed);
   }
 
   const Sorted& surface_;
@@ -211,7 +192,7 @@ class Descent {
   const PointNormalOptions& options_;
   double rounding_ = 0.0;
   std::uint32_t min_ = 3, enough_ = 3;
-  bool same_ = false;
+  bool same_ = false;  // queries and surface
   std::atomic<std::size_t> without_{0};
   std::vector<Cell> cells_, finer_cells_;
   std::vector<std::atomic<std::uint8_t>> wanted_, finer_wanted_;  // to be split: some finer block may hold their points

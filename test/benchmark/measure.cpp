@@ -12,6 +12,8 @@
 #include <cstdio>
 #include <exception>
 #include <fstream>
+#include <numeric>
+#include <random>
 #include <sstream>
 #include <stdexcept>
 
@@ -96,8 +98,14 @@ Measured ofCommand(const std::vector<std::string>& words) {
 template <typename Work, typename Run>
 std::vector<Measured> inTurn(const std::vector<Work>& works, int runs, const Run& run) {
   std::vector<std::vector<Measured>> all(works.size());
-  for (int i = 0; i < runs; ++i)
-    for (std::size_t w = 0; w < works.size(); ++w) all[w].push_back(run(works[w]));
+  std::vector<std::size_t> order(works.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::mt19937_64 random(1);
+  for (int i = 0; i < runs; ++i) {
+    // In a fixed order one work would always follow the peer that has just given back the most memory, and pay for it.
+    std::shuffle(order.begin(), order.end(), random);
+    for (const std::size_t w : order) all[w].push_back(run(works[w]));
+  }
   std::vector<Measured> medians;
   for (std::vector<Measured>& of : all) {
     std::sort(of.begin(), of.end(), [](const Measured& a, const Measured& b) { return a.seconds < b.seconds; });
