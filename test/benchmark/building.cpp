@@ -136,7 +136,7 @@ void measureCoarsening(const Input& input, int runs, Table& table) {
       return static_cast<double>(build<3>(count(*input.cloud, 0.2, 1), {0.2, 5, count_of, 0.0}).cellCount(0));
     };
   };
-  // A small difference of large times: the median of three would be as often half of it as twice.
+  // A small difference of large times: of a few runs it would be as often half of it as twice.
   const std::vector<Measured> of = measureInTurn({scales(1), scales(4)}, std::max(runs, 15));
   table.add(Figure{"coarser scales", input.name + ", 0.2, 1, 5, 25 m", "share of the build", "%",
                    100.0 * (of[1].seconds - of[0].seconds) / of[1].seconds, 10.0});

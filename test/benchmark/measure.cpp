@@ -106,14 +106,14 @@ std::vector<Measured> inTurn(const std::vector<Work>& works, int runs, const Run
     std::shuffle(order.begin(), order.end(), random);
     for (const std::size_t w : order) all[w].push_back(run(works[w]));
   }
-  std::vector<Measured> medians;
-  for (std::vector<Measured>& of : all) {
-    std::sort(of.begin(), of.end(), [](const Measured& a, const Measured& b) { return a.seconds < b.seconds; });
-    Measured median = of[of.size() / 2];
-    for (const Measured& one : of) median.megabytes = std::max(median.megabytes, one.megabytes);
-    medians.push_back(median);
+  // What else the machine does only ever makes a run longer.
+  std::vector<Measured> fastest;
+  for (const std::vector<Measured>& of : all) {
+    fastest.push_back(*std::min_element(of.begin(), of.end(),
+                                        [](const Measured& a, const Measured& b) { return a.seconds < b.seconds; }));
+    for (const Measured& one : of) fastest.back().megabytes = std::max(fastest.back().megabytes, one.megabytes);
   }
-  return medians;
+  return fastest;
 }
 
 }  // namespace

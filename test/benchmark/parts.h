@@ -27,9 +27,11 @@ struct Options {
   std::vector<std::size_t> points = {5000000, 20000000};  ///< of the simulated drive
   std::string data;                                       ///< directory with kitti_6scans and so on; empty: none
   std::string build;                                      ///< directory of the other programs of the benchmark
-  int runs = 3;                                           ///< the median counts; one for more than ten million points
+  int runs = 5;                                           ///< the fastest counts; three of more than ten million points
 };
 
+/// What two threads of this machine can do, of work that shares nothing.
+void measureMachine(int runs, Table& table);
 /// The finest scale beside pcl::VoxelGridCovariance, std::unordered_map and OctoMap's hits: time, memory.
 void measureBuilding(const Input& input, int runs, bool is_goal, Table& table);
 /// What the coarser scales take of building.
