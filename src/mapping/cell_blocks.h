@@ -62,7 +62,7 @@ struct Blocks {
             const int dx = x - 2 - int(k & 1), dy = y - 2 - int(k >> 1 & 1), dz = z - 2 - int(k >> 2);
             const int most = std::max({std::abs(dx), std::abs(dy), std::abs(dz)});
             const int two = (std::abs(dx) == 2) + (std::abs(dy) == 2) + (std::abs(dz) == 2);
-            const auto cell = std::size_t(x / 2 + 3 * (y / 2) + 9 * (z / 2));
+            const auto cell = std::size_t(x / 2) + 3 * std::size_t(y / 2) + 9 * std::size_t(z / 2);
             const auto octant = std::size_t((x & 1) | (y & 1) << 1 | (z & 1) << 2);
             if (most == 2 && two == 1) five[k][cell / 8] |= std::uint64_t{1} << (8 * (cell % 8) + octant);
             if (most > 1) continue;

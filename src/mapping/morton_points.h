@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/morton.h"
+#include "common/parallel.h"
 #include "gaussmap/mapping/point_normals.h"
 #include "mapping/plane_batch.h"
 
@@ -53,20 +54,27 @@ struct Sorted {
   MortonItems items;
   std::vector<std::array<float, 4>, PagesAllocator<std::array<float, 4>>> points;  // x y z 1, and padding
 
-  Sorted(const PointsView& view, const Cube& cube) {
+  Sorted(const PointsView& view, const Cube& cube, int threads) {
+    constexpr std::size_t kGrain = 4096;
     const double per_metre = cube.cellsPerMetre();
-    items.reserve(view.count);
-    for (std::size_t i = 0; i < view.count; ++i)
-      if (isFinite(view[i]) && cube.contains(view[i]))
-        items.push_back({cube.codeOf(view[i], per_metre), std::uint32_t(i)});
+    items.resize(view.count);
+    parallelFor(view.count, threads, kGrain, [&](std::size_t i) {
+      const bool counts = isFinite(view[i]) && cube.contains(view[i]);
+      items[i] = {counts ? cube.codeOf(view[i], per_metre) : kNoCode, std::uint32_t(i)};
+    });
+    items.erase(std::remove_if(items.begin(), items.end(), [](const MortonItem& item) { return item.code == kNoCode; }),
+                items.end());
     MortonItems spare;
     sortByCode(items.data(), items.size(), spare);
     points.resize(items.size() + PlaneSums::kPadding);
-    for (std::size_t i = 0; i < items.size(); ++i) {
+    parallelFor(items.size(), threads, kGrain, [&](std::size_t i) {
       const float* const p = view[items[i].index];
       points[i] = {p[0], p[1], p[2], 1.0f};
-    }
+    });
   }
+
+ private:
+  static constexpr std::uint64_t kNoCode = ~std::uint64_t{0};
 };
 
 /// Borders of the octants of a range of sorted items at a level (shift = 3 (level - 1)): 9 indices.

@@ -96,10 +96,10 @@ class Descent {
     }
 
    private:
-    Descent& descent_;
     PlaneBatch batch_;
-    std::array<Range, PlaneBatch::kCapacity> queries_;
+    Descent& descent_;
     std::size_t size_ = 0;
+    std::array<Range, PlaneBatch::kCapacity> queries_;
   };
 
   void write(const PlaneBatch& batch, std::size_t i, Range queries) {
@@ -209,10 +209,10 @@ void checkOptions(const PointNormalOptions& options, std::size_t points) {
 /// Of the queries within the cube; returns how many have none.
 std::size_t normalsWithin(const Cube& cube, const PointsView& surface, const PointsView& queries,
                           const NormalsView& normals, const PointNormalOptions& options) {
-  const Sorted points(surface, cube);
+  const Sorted points(surface, cube, options.threads);
   if (surface.first == queries.first && surface.count == queries.count && surface.stride == queries.stride)
     return Descent(points, points, cube, normals, options).run();
-  return Descent(points, Sorted(queries, cube), cube, normals, options).run();
+  return Descent(points, Sorted(queries, cube, options.threads), cube, normals, options).run();
 }
 
 }  // namespace

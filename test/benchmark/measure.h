@@ -14,8 +14,9 @@ struct Measured {
 };
 
 /// Runs every work `runs` times, each round in another order, each time in a child process of its own: what one leaves
-/// in memory or caches is no other's gain. The least of the times, the largest memory. The works must not have started threads before.
-/// Warm: the time is that of a second call in the same process. Throws std::runtime_error if a child fails.
+/// in memory or caches is no other's gain. The least of the times, the largest memory. The works must not have started
+/// threads before. Warm: the time is that of a second call in the same process. Throws std::runtime_error if a child
+/// fails.
 enum class Start { Cold, Warm };
 std::vector<Measured> measureInTurn(const std::vector<std::function<double()>>& works, int runs,
                                     Start start = Start::Cold);

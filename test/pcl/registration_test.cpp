@@ -18,23 +18,12 @@
 #include "gaussmap/io/map_file.h"
 #include "gaussmap/simulation/simulation.h"
 #include "io/temporary_directory.h"
+#include "pcl/scan_cloud.h"
 
 namespace gaussmap {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
-template <typename PointT>
-typename pcl::PointCloud<PointT>::Ptr cloudOf(const SimulatedScan& scan) {
-  auto cloud = pcl::make_shared<pcl::PointCloud<PointT>>();
-  for (const Eigen::Vector3d& point : scan.points) {
-    PointT made{};
-    made.getVector3fMap() = point.cast<float>();
-    cloud->push_back(made);
-  }
-  cloud->is_dense = false;
-  return cloud;
-}
 
 /// Two scans of the hall, 1 m or so apart.
 struct Hall {

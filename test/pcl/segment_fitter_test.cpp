@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "gaussmap/simulation/simulation.h"
+#include "pcl/scan_cloud.h"
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpedantic"
@@ -24,19 +24,6 @@ namespace gaussmap {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
-template <typename PointT>
-typename pcl::PointCloud<PointT>::Ptr cloudOf(const SimulatedScan& scan) {
-  auto cloud = pcl::make_shared<pcl::PointCloud<PointT>>();
-  for (const Eigen::Vector3d& point : scan.points) {
-    PointT made{};
-    made.getVector3fMap() = point.cast<float>();
-    cloud->push_back(made);
-  }
-  cloud->sensor_origin_.template head<3>() = scan.pose.translation.cast<float>();
-  cloud->sensor_orientation_ = Eigen::Quaterniond(scan.pose.rotation).cast<float>();
-  return cloud;
-}
 
 std::vector<SimulatedScan> planScans(int count) {
   const Simulation plan = makeSimulation(WorldName::Plan, {count, false});
