@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/morton.h"
+#include "common/pages.h"
 #include "common/parallel.h"
 #include "gaussmap/mapping/point_normals.h"
 #include "mapping/plane_batch.h"
@@ -133,7 +134,7 @@ inline Cube withoutStrays(const Cube& all, const PointsView& surface) {
     const auto few = std::ptrdiff_t(axes[axis].size() / 100);
     const auto begin = axes[axis].begin(), end = axes[axis].end(), lower = begin + few, upper = end - 1 - few;
     std::nth_element(begin, lower, end);
-    std::nth_element(lower, upper, end);
+    std::nth_element(lower + 1, upper, end);  // *lower stays
     low[Eigen::Index(axis)] = double(*lower);
     high[Eigen::Index(axis)] = double(*upper);
   }

@@ -85,7 +85,7 @@ inline __attribute__((always_inline)) void addPairs(const Point* points, std::si
 
 GAUSSMAP_CLONES void addAll(const Point* points, const PlaneRanges& ranges, PlaneSums& sums) {
   constexpr std::uint32_t kCopied = PlaneSums::kPadding;
-  Point together[kTogether + kCopied];
+  Point together[kTogether];
   const Point& about = points[ranges.first(0)];
   const double ox = double(about[0]), oy = double(about[1]), oz = double(about[2]);
   Products products{{ox, oy, oz, 0.0, ox, oy, oz, 0.0}};

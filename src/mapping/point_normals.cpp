@@ -9,6 +9,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/parallel.h"
@@ -90,6 +91,7 @@ class Descent {
       if (++size_ == PlaneBatch::kCapacity) flush();
     }
     void flush() {
+      if (size_ == 0) return;
       batch_.solve(descent_.rounding_);
       for (std::size_t i = 0; i < size_; ++i) descent_.write(batch_, i, queries_[i]);
       size_ = 0;

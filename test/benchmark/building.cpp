@@ -101,10 +101,9 @@ void measureBuilding(const Input& input, int runs, bool is_goal, Table& table) {
     const std::vector<Measured> of =
         measureInTurn({[&] { return sums(*cloud, side, 1); }, [&] { return sums(*cloud, side, 2); },
                        [&] { return gaussians(*cloud, side); }, [&] { return voxelGridCovariance(cloud, side); },
-                       [&] { return unorderedMap(*cloud, side); }},
+                       [&] { return unorderedMap(*cloud, side); }, [&] { return octomapHits(*cloud, side); }},
                       runs);
-    const Measured octomap = measureInTurn({[&] { return octomapHits(*cloud, side); }}, 1).front();
-    const Measured &one = of[0], &two = of[1], &whole = of[2], &voxels = of[3], &plain = of[4];
+    const Measured &one = of[0], &two = of[1], &whole = of[2], &voxels = of[3], &plain = of[4], &octomap = of[5];
     char name[96];
     std::snprintf(name, sizeof name, "%s, %.1f M, %g m", input.name.c_str(), static_cast<double>(cloud->size()) / 1e6,
                   side);

@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 #include <thread>
+#include <vector>
 
 #include "measure.h"
 #include "parts.h"
@@ -10,8 +11,9 @@ namespace gaussmap::benchmark {
 namespace {
 
 /// Eight chains at once: as much as one core can do.
-double shiftAndXor() {
-  std::array<std::uint64_t, 8> state = {1, 2, 3, 4, 5, 6, 7, 8};
+double shiftAndXor(std::uint64_t seed) {
+  std::array<std::uint64_t, 8> state = {};
+  for (std::uint64_t& s : state) s = ++seed;
   for (int i = 0; i < 30000000; ++i)
     for (std::uint64_t& s : state) {
       s ^= s << 13;
@@ -29,33 +31,32 @@ double sumOf(const std::vector<std::uint64_t>& numbers) {
   return static_cast<double>(sum);
 }
 
+/// work(0) and work(1), one after the other or at once.
 template <typename Work>
-double twice(const Work& work, int threads) {
+double both(const Work& work, int threads) {
+  if (threads == 1) return work(0) + work(1);
   double other = 0.0;
-  if (threads == 1) {
-    other = work();
-    return other + work();
-  }
-  std::thread second([&] { other = work(); });
-  const double own = work();
+  std::thread second([&] { other = work(1); });
+  const double own = work(0);
   second.join();
   return own + other;
 }
 
 template <typename Work>
 void measure(const char* name, const Work& work, int runs, Table& table) {
-  const std::vector<Measured> of =
-      measureInTurn({[&] { return twice(work, 2); }, [&] { return twice(work, 1); }}, runs);
+  const std::vector<Measured> of = measureInTurn({[&] { return both(work, 2); }, [&] { return both(work, 1); }}, runs);
   table.add(Row{"this machine", name, 2, of[0].seconds, 0.0, "one thread", of[1].seconds, 0.0, 0.0});
 }
 
 }  // namespace
 
 void measureMachine(int runs, Table& table) {
-  measure("sums in registers", shiftAndXor, runs, table);
-  const std::vector<std::uint64_t> numbers(std::size_t{1} << 25, 1);
   measure(
-      "reading 256 MB", [&] { return sumOf(numbers); }, runs, table);
+      "sums in registers", [](std::uint64_t part) { return shiftAndXor(100 * part); }, runs, table);
+  const std::vector<std::uint64_t> numbers[2] = {std::vector<std::uint64_t>(std::size_t{1} << 25, 1),
+                                                 std::vector<std::uint64_t>(std::size_t{1} << 25, 2)};
+  measure(
+      "reading 512 MB", [&](std::size_t part) { return sumOf(numbers[part]); }, runs, table);
 }
 
 }  // namespace gaussmap::benchmark

@@ -13,7 +13,7 @@ struct Measured {
   double value = 0.0;      ///< what the work returned
 };
 
-/// Runs every work `runs` times, each round in another order, each time in a child process of its own: what one leaves
+/// Runs every work `runs` times, each round in random order, each time in a child process of its own: what one leaves
 /// in memory or caches is no other's gain. The least of the times, the largest memory. The works must not have started
 /// threads before. Warm: the time is that of a second call in the same process. Throws std::runtime_error if a child
 /// fails.

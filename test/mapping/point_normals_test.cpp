@@ -96,19 +96,20 @@ TEST(PointNormals, FollowABallAndLookAtTheViewpoint) {
   }
 }
 
-/// The documented rule by brute force: blocks around a point from the finest on.
-TEST(PointNormals, AreOfTheFinestBlockThatHoldsEnoughPoints) {
-  const Points points = ball(3000, 1.0);
+/// The documented rule by brute force: blocks around a query from the coarsest on, down as long as the next finer one
+/// has 2.5 times as many points as it takes.
+void expectFinestBlocks(const Points& points, const Points& queries, std::size_t min_points) {
   PointNormalOptions options;
-  options.min_points = 9;
-  const Normals normals = normalsOf(points, points, options);
+  options.min_points = int(min_points);
+  const Normals normals = normalsOf(points, queries, options);
   // The cube of cells: from the least coordinates, as wide as the widest axis.
   Eigen::Vector3d low = Eigen::Vector3d::Constant(1e9), high = -low;
-  for (const auto& p : points)
-    for (int axis = 0; axis < 3; ++axis) {
-      low[axis] = std::min(low[axis], double(p[std::size_t(axis)]));
-      high[axis] = std::max(high[axis], double(p[std::size_t(axis)]));
-    }
+  for (const Points* of : {&points, &queries})
+    for (const auto& p : *of)
+      for (int axis = 0; axis < 3; ++axis) {
+        low[axis] = std::min(low[axis], double(p[std::size_t(axis)]));
+        high[axis] = std::max(high[axis], double(p[std::size_t(axis)]));
+      }
   const double side = (high - low).maxCoeff();
   const auto cellOf = [&](const std::array<float, 3>& p, int level) {
     Eigen::Vector3i cell;
@@ -116,22 +117,22 @@ TEST(PointNormals, AreOfTheFinestBlockThatHoldsEnoughPoints) {
       cell[axis] = int((double(p[std::size_t(axis)]) - low[axis]) * (2097151.0 / side)) >> level;
     return cell;
   };
-  for (std::size_t q = 0; q < points.size(); q += 97) {
+  for (std::size_t q = 0; q < queries.size(); q += 97) {
     std::vector<std::size_t> chosen;
     const auto block = [&](int level, int reach) {
       std::vector<std::size_t> members;
-      const Eigen::Vector3i own = cellOf(points[q], level);
+      const Eigen::Vector3i own = cellOf(queries[q], level);
       for (std::size_t i = 0; i < points.size(); ++i) {
         const Eigen::Array3i off = (cellOf(points[i], level) - own).array().abs();
         if (off.maxCoeff() <= reach && (off == 2).count() <= 1) members.push_back(i);
       }
       return members;
     };
-    for (int level = 21;; --level) {  // down as long as the next finer block has 2.5 times as many
+    for (int level = 21;; --level) {
       const auto finer = block(level - 1, 1);
-      if (finer.size() >= 23) continue;
-      chosen = finer.size() >= 9 ? finer : block(level - 1, 2);
-      if (chosen.size() < 9) chosen = block(level, 1);
+      if (double(finer.size()) >= 2.5 * double(min_points)) continue;
+      chosen = finer.size() >= min_points ? finer : block(level - 1, 2);
+      if (chosen.size() < min_points) chosen = block(level, 1);
       break;
     }
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -146,6 +147,15 @@ TEST(PointNormals, AreOfTheFinestBlockThatHoldsEnoughPoints) {
     EXPECT_GT(std::abs(solver.eigenvectors().col(0).dot(normals.normal(q))), 1.0 - 1e-5);
     EXPECT_NEAR(solver.eigenvalues()[0] / spread.trace(), double(normals.records[q][3]), 1e-5);
   }
+}
+
+TEST(PointNormals, AreOfTheFinestBlockThatHoldsEnoughPoints) {
+  const Points points = ball(3000, 1.0);
+  for (const std::size_t min_points : {9, 14, 1000}) expectFinestBlocks(points, points, min_points);
+}
+
+TEST(PointNormals, BesideTheSurfaceAreOfTheFinestBlockThatHoldsEnoughPoints) {
+  for (const std::size_t min_points : {9, 14}) expectFinestBlocks(ball(3000, 1.0), ball(2000, 0.97), min_points);
 }
 
 TEST(PointNormals, OfChosenQueriesAreThoseOfAllOfThem) {
@@ -171,6 +181,9 @@ TEST(PointNormals, DoNotDependOnThreads) {
   one.threads = 1;
   two.threads = 2;
   EXPECT_EQ(normalsOf(points, points, one).records, normalsOf(points, points, two).records);
+  Points beside = ball(20000, 3.1);
+  beside.push_back({1e6f, 0, 0});
+  EXPECT_EQ(normalsOf(points, beside, one).records, normalsOf(points, beside, two).records);
 }
 
 TEST(PointNormals, LeaveOutPointsThatAreNone) {
