@@ -65,7 +65,6 @@ MapScale<D> coarsen(MapScale<D>& finer, const Grid<D>& grid, int finer_scale) {
   return coarser;
 }
 
-// NOLINTBEGIN(bugprone-macro-parentheses): a template argument
 #define GAUSSMAP_INSTANTIATE(D)                                                                                 \
   template Gaussian<D> localGaussian<D>(const MapScale<D>&, const Grid<D>&, int, std::size_t);                  \
   template IndexRange gaussiansOf<D>(const MapScale<D>&, std::size_t);                                          \
@@ -74,6 +73,5 @@ MapScale<D> coarsen(MapScale<D>& finer, const Grid<D>& grid, int finer_scale) {
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)
 #undef GAUSSMAP_INSTANTIATE
-// NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace gaussmap
