@@ -27,8 +27,8 @@ KLClustering<D> insertCluster(const std::vector<Gaussian<D>>& data, const std::v
   return clustering;
 }
 
-#define GAUSSMAP_INSTANTIATE(D)                                                                               \
-  template KLClustering<D> insertCluster<D>(const std::vector<Gaussian<D>>&, const std::vector<Gaussian<D>>&, \
+#define GAUSSMAP_INSTANTIATE(D)                                                                                   \
+  template KLClustering<D> insertCluster<D>(const std::vector<Gaussian<(D)>>&, const std::vector<Gaussian<(D)>>&, \
                                             const KLKMeansOptions&);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)

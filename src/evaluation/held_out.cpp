@@ -280,12 +280,12 @@ HeldOutResult heldOutLogLikelihood(const GaussianMap<D>& map, const std::vector<
   return summarise(scoreLeaves<D>(map, points, options.threads), volume, options);
 }
 
-#define GAUSSMAP_INSTANTIATE(D)                                                                                   \
-  template std::vector<double> logLikelihoods<D>(const GaussianMap<D>&, int, const std::vector<Vector<D>>&, int); \
-  template std::vector<double> logLikelihoods<D>(const GaussianMap<D>&, const std::vector<Vector<D>>&, int);      \
-  template HeldOutResult heldOutLogLikelihood<D>(const GaussianMap<D>&, int, const std::vector<Vector<D>>&,       \
-                                                 const HeldOutOptions&);                                          \
-  template HeldOutResult heldOutLogLikelihood<D>(const GaussianMap<D>&, const std::vector<Vector<D>>&,            \
+#define GAUSSMAP_INSTANTIATE(D)                                                                                     \
+  template std::vector<double> logLikelihoods<D>(const GaussianMap<D>&, int, const std::vector<Vector<(D)>>&, int); \
+  template std::vector<double> logLikelihoods<D>(const GaussianMap<D>&, const std::vector<Vector<(D)>>&, int);      \
+  template HeldOutResult heldOutLogLikelihood<D>(const GaussianMap<D>&, int, const std::vector<Vector<(D)>>&,       \
+                                                 const HeldOutOptions&);                                            \
+  template HeldOutResult heldOutLogLikelihood<D>(const GaussianMap<D>&, const std::vector<Vector<(D)>>&,            \
                                                  const HeldOutOptions&);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)

@@ -153,7 +153,7 @@ MapSamples<D> sampleLeaves(const GaussianMap<D>& map, const SampleOptions& optio
 #define GAUSSMAP_INSTANTIATE(D)                                                                        \
   template struct MapSamples<D>;                                                                       \
   template std::vector<std::size_t> sampleCounts<D>(const GaussianMap<D>&, int, const SampleOptions&); \
-  template MapSamples<D> sampleWithin<D>(const GaussianMap<D>&, int, const std::vector<Box<D>>&,       \
+  template MapSamples<D> sampleWithin<D>(const GaussianMap<D>&, int, const std::vector<Box<(D)>>&,     \
                                          const SampleOptions&);                                        \
   template MapSamples<D> sampleMap<D>(const GaussianMap<D>&, int, const SampleOptions&);               \
   template MapSamples<D> sampleLeaves<D>(const GaussianMap<D>&, const SampleOptions&);

@@ -115,7 +115,7 @@ Vector<D> GaussianSampler<D>::standard(Random& random) {
   template double mahalanobisSquared<D>(const Vector<D>&, const Gaussian<D>&); \
   template double logDensity<D>(const Vector<D>&, const Gaussian<D>&);         \
   template double logDeterminant<D>(const Matrix<D>&);                         \
-  template Gaussian<D> merge<D>(const std::vector<Gaussian<D>>&);              \
+  template Gaussian<D> merge<D>(const std::vector<Gaussian<(D)>>&);            \
   template struct PrincipalAxes<D>;                                            \
   template PrincipalAxes<D> principalAxes<D>(const Gaussian<D>&);              \
   template class GaussianSampler<D>;

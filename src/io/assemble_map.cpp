@@ -89,7 +89,7 @@ GaussianMap<D> assembleMap(const MapOptions& options, std::vector<Tile<D>> tiles
 
 #define GAUSSMAP_INSTANTIATE(D)                          \
   template void appendTile<D>(Tile<D>&, const Tile<D>&); \
-  template GaussianMap<D> assembleMap<D>(const MapOptions&, std::vector<Tile<D>>);
+  template GaussianMap<D> assembleMap<D>(const MapOptions&, std::vector<Tile<(D)>>);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)
 #undef GAUSSMAP_INSTANTIATE

@@ -199,15 +199,15 @@ Tile<D> decodeRow(const std::filesystem::path& path, std::string_view bytes, con
   }
 }
 
-#define GAUSSMAP_INSTANTIATE(D)                                                                                \
-  template CellKey<D> tileOf<D>(const CellKey<D>&, std::int32_t);                                              \
-  template MapMetadata ownEntries<D>(const MapOptions&, const std::vector<std::size_t>&,                       \
-                                     const std::vector<std::size_t>&);                                         \
-  template MapOptions readOptions<D>(const std::filesystem::path&, const MapMetadata&);                        \
-  template class TileInsert<D>;                                                                                \
-  template class TileSelect<D>;                                                                                \
-  template std::vector<CellKey<D>> tilesWithin<D>(const Database&, int, const CellKey<D>&, const CellKey<D>&); \
-  template Tile<D> decodeRow<D>(const std::filesystem::path&, std::string_view, const TileAddress<D>&,         \
+#define GAUSSMAP_INSTANTIATE(D)                                                                                  \
+  template CellKey<D> tileOf<D>(const CellKey<D>&, std::int32_t);                                                \
+  template MapMetadata ownEntries<D>(const MapOptions&, const std::vector<std::size_t>&,                         \
+                                     const std::vector<std::size_t>&);                                           \
+  template MapOptions readOptions<D>(const std::filesystem::path&, const MapMetadata&);                          \
+  template class TileInsert<D>;                                                                                  \
+  template class TileSelect<D>;                                                                                  \
+  template std::vector<CellKey<(D)>> tilesWithin<D>(const Database&, int, const CellKey<D>&, const CellKey<D>&); \
+  template Tile<D> decodeRow<D>(const std::filesystem::path&, std::string_view, const TileAddress<D>&,           \
                                 const MapOptions&);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)

@@ -46,10 +46,10 @@ std::vector<Box<D>> memberBoxes(const GaussianMap<D>& map, int scale) {
   return boxes;
 }
 
-#define GAUSSMAP_INSTANTIATE(D)                                                                                 \
-  template std::vector<Box<D>> boxesOfParents<D>(const std::vector<Box<D>>&, const std::vector<std::uint32_t>&, \
-                                                 std::size_t);                                                  \
-  template std::vector<Box<D>> memberBoxes<D>(const GaussianMap<D>&, int);
+#define GAUSSMAP_INSTANTIATE(D)                                                                                     \
+  template std::vector<Box<(D)>> boxesOfParents<D>(const std::vector<Box<(D)>>&, const std::vector<std::uint32_t>&, \
+                                                   std::size_t);                                                    \
+  template std::vector<Box<(D)>> memberBoxes<D>(const GaussianMap<D>&, int);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)
 #undef GAUSSMAP_INSTANTIATE

@@ -147,11 +147,11 @@ std::optional<Vector<D>> normalAt(const GaussianMap<D>& map, const Vector<D>& po
   return std::nullopt;
 }
 
-#define GAUSSMAP_INSTANTIATE(D)                                                                \
-  template double logLikelihood<D>(const GaussianMap<D>&, const Vector<D>&, int);              \
-  template double logLikelihood<D>(const GaussianMap<D>&, const Vector<D>&);                   \
-  template std::optional<Nearest<D>> nearest<D>(const GaussianMap<D>&, const Vector<D>&, int); \
-  template std::optional<Vector<D>> normalAt<D>(const GaussianMap<D>&, const Vector<D>&);
+#define GAUSSMAP_INSTANTIATE(D)                                                                  \
+  template double logLikelihood<D>(const GaussianMap<D>&, const Vector<D>&, int);                \
+  template double logLikelihood<D>(const GaussianMap<D>&, const Vector<D>&);                     \
+  template std::optional<Nearest<(D)>> nearest<D>(const GaussianMap<D>&, const Vector<D>&, int); \
+  template std::optional<Vector<(D)>> normalAt<D>(const GaussianMap<D>&, const Vector<D>&);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)
 #undef GAUSSMAP_INSTANTIATE

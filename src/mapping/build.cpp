@@ -60,9 +60,9 @@ GaussianMap<D> build(const MapScale<D>& cells, const MapOptions& options) {
   return withCoarserScales<D>(std::move(finest), Grid<D>(options));
 }
 
-#define GAUSSMAP_INSTANTIATE(D)                                                       \
-  template GaussianMap<D> build<D>(const MomentGrid<D>&, const MapOptions&);          \
-  template GaussianMap<D> build<D>(const std::vector<Vector<D>>&, const MapOptions&); \
+#define GAUSSMAP_INSTANTIATE(D)                                                         \
+  template GaussianMap<D> build<D>(const MomentGrid<D>&, const MapOptions&);            \
+  template GaussianMap<D> build<D>(const std::vector<Vector<(D)>>&, const MapOptions&); \
   template GaussianMap<D> build<D>(const MapScale<D>&, const MapOptions&);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)

@@ -65,10 +65,10 @@ MapScale<D> coarsen(MapScale<D>& finer, const Grid<D>& grid, int finer_scale) {
   return coarser;
 }
 
-#define GAUSSMAP_INSTANTIATE(D)                                                                                 \
-  template Gaussian<D> localGaussian<D>(const MapScale<D>&, const Grid<D>&, int, std::size_t);                  \
-  template IndexRange gaussiansOf<D>(const MapScale<D>&, std::size_t);                                          \
-  template void gatherUnder<D>(const MapScale<D>&, const Grid<D>&, int, IndexRange, std::vector<Gaussian<D>>&); \
+#define GAUSSMAP_INSTANTIATE(D)                                                                                   \
+  template Gaussian<D> localGaussian<D>(const MapScale<D>&, const Grid<D>&, int, std::size_t);                    \
+  template IndexRange gaussiansOf<D>(const MapScale<D>&, std::size_t);                                            \
+  template void gatherUnder<D>(const MapScale<D>&, const Grid<D>&, int, IndexRange, std::vector<Gaussian<(D)>>&); \
   template MapScale<D> coarsen<D>(MapScale<D>&, const Grid<D>&, int);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)

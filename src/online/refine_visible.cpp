@@ -213,9 +213,9 @@ void refineVisible(OnlineCells<D>& cells, const OnlineScan<D>& scan, const Onlin
   }
 }
 
-#define GAUSSMAP_INSTANTIATE(D)                                                                    \
-  template void recluster<D>(OnlineCells<D>&, std::uint32_t, int, const std::vector<Gaussian<D>>&, \
-                             const std::vector<int>&);                                             \
+#define GAUSSMAP_INSTANTIATE(D)                                                                      \
+  template void recluster<D>(OnlineCells<D>&, std::uint32_t, int, const std::vector<Gaussian<(D)>>&, \
+                             const std::vector<int>&);                                               \
   template void refineVisible<D>(OnlineCells<D>&, const OnlineScan<D>&, const OnlineOptions&, OnlineStatistics&);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)

@@ -167,9 +167,9 @@ void splitSharedCells(OnlineCells<D>& cells, const OnlineScan<D>& scan, const st
   }
 }
 
-#define GAUSSMAP_INSTANTIATE(D)                                                                                      \
-  template void splitSharedCells<D>(OnlineCells<D>&, const OnlineScan<D>&, const std::vector<GoneCell<D>>&,          \
-                                    std::deque<ScanSums<D>>&, const OnlineOptions&, const OnlineMapper<D>::Removed&, \
+#define GAUSSMAP_INSTANTIATE(D)                                                                                        \
+  template void splitSharedCells<D>(OnlineCells<D>&, const OnlineScan<D>&, const std::vector<GoneCell<(D)>>&,          \
+                                    std::deque<ScanSums<(D)>>&, const OnlineOptions&, const OnlineMapper<D>::Removed&, \
                                     OnlineStatistics&);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)

@@ -10,7 +10,7 @@
 namespace gaussmap::benchmark {
 namespace {
 
-/// Eight chains at once: as much as one core can do.
+/// Eight chains that do not wait for each other.
 double shiftAndXor(std::uint64_t seed) {
   std::array<std::uint64_t, 8> state = {};
   for (std::uint64_t& s : state) s = ++seed;

@@ -20,7 +20,8 @@ compare ratios, not seconds.
 ## Beside its peers
 
 `gaussmap_benchmark --table --growth --data DATA`: everything in the same run, every measurement in a process of its own;
-the fastest of five runs in random order (three with more than ten million points, one on line). The README has the shorter half of this table.
+the fastest of five runs in random order (three with more than ten million points, one on line; of registration the mean
+of all starts). The README has the shorter half of this table.
 
 <!-- benchmark: begin -->
 <!-- benchmark: end -->

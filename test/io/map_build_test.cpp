@@ -9,7 +9,6 @@
 #include "io/gain_threshold.h"
 #include "io/map_file_fixture.h"
 #include "mapping/undo_merges.h"
-#include "sanitized.h"
 
 namespace gaussmap::test {
 namespace {
@@ -129,7 +128,7 @@ TEST_F(BuiltFile, LeavesNothingBehind) {
 
 TEST(LargestGains, AreThoseOfAQueue) {
   Random random(154);
-  for (int round = 0; round < (test::kSanitized ? 60 : 300); ++round) {
+  for (int round = 0; round < 300; ++round) {
     std::vector<std::vector<double>> cells(1 + random.below(20));
     std::vector<double> all;
     for (std::vector<double>& gains : cells) {
