@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "common/key_index.h"
@@ -22,52 +21,65 @@ struct MapGaussian {
 /// looked up or worked out once, when it is first met.
 class MapNeighbours {
  public:
-  MapNeighbours(const GaussianMap<3>& map, int scale, const Vector<3>& origin)
-      : map_(map), scale_(scale), origin_(origin), place_(map.gaussianCount(scale), kNone) {}
+  MapNeighbours(const GaussianMap<3>& map, int scale, const Vector<3>& origin);
 
   /// Widens all Gaussians by `blur` [m] in the search of the nearest.
   void setBlur(double blur);
   double blur() const { return blur_; }
 
   /// The list of the cells around a point [m, about the origin], made if need be. Not thread-safe. kNone beyond all
-  /// cells.
-  std::uint32_t listAt(const Vector<3>& point);
+  /// cells. `hint`: a list that is right if the point has not moved far, or kNone.
+  std::uint32_t listAt(const Vector<3>& point, std::uint32_t hint = kNone) {
+    if (hint != kNone && (point - lists_[hint].corner).cwiseAbs().maxCoeff() <= half_side_) return hint;
+    return findList(point);
+  }
   /// The nearest Gaussian in a list by the Mahalanobis distance, ties to the first; kNone in an empty one.
   std::uint32_t nearest(std::uint32_t list, const Vector<3>& point) const;
   /// Works out Gaussian `i`. Not thread-safe.
-  void prepare(std::uint32_t i);
+  void prepare(std::uint32_t i) {
+    if (place_[i] == kNone) workOut(i);
+  }
   /// A prepared one.
-  const MapGaussian& operator[](std::uint32_t i) const { return *found_[i].worked_out; }
+  const MapGaussian& operator[](std::uint32_t i) const { return worked_out_[place_[i]]; }
 
   static constexpr std::uint32_t kNone = KeyIndex::kNone;
 
  private:
   struct Candidate {
-    Vector<3> mean;
-    Matrix<3> information;  // of the widened covariance
+    double x, y, z;                 // the mean, about the origin
+    double xx, yy, zz, xy, xz, yz;  // the inverse of the widened covariance; twice what is not on its diagonal
   };
-  struct Found {
-    std::size_t index;  // in the map
-    std::optional<MapGaussian> worked_out;
+  struct List {
+    Vector<3> corner;         // where its cells meet, about the origin
+    std::size_t first, last;  // in members_
   };
-  struct Cells {  // by key: Gaussians of the cell, or the list of those around its corner of highest coordinates
-    std::vector<CellKey<3>> keys;
-    std::vector<std::vector<std::uint32_t>> gaussians;
-    KeyIndex index;
+  struct Cell {
+    CellKey<3> key;
+    std::size_t index;            // in the map
+    std::uint32_t first = kNone;  // of its candidates, once there are some
   };
 
-  const std::vector<std::uint32_t>& gaussiansIn(const CellKey<3>& key);
-  std::uint32_t candidate(std::size_t index);
-  Matrix<3> widened(std::size_t index) const;
+  std::uint32_t findList(const Vector<3>& point);
+  void enterCellsUnder(const CellKey<3>& parent);
+  std::uint32_t cellAt(const CellKey<3>& key);
+  void addCandidates(Cell& cell);
+  void widen(std::size_t i);
+  void workOut(std::uint32_t i);
 
   const GaussianMap<3>& map_;
   const int scale_;
   const Vector<3> origin_;
+  const double half_side_;
   double blur_ = 0.0;
-  std::vector<std::uint32_t> place_;  // of the map's Gaussians in candidates_ and found_
+  KeyIndex cell_index_, parent_index_, list_index_;
+  std::vector<Cell> cells_;                // all of the map below the parents
+  std::vector<CellKey<3>> parents_, low_;  // entered so far; of the lists' cells, those of lowest coordinates
+  std::vector<List> lists_;
+  std::vector<std::uint32_t> members_;  // candidates, list after list
   std::vector<Candidate> candidates_;
-  std::vector<Found> found_;
-  Cells cells_, lists_;
+  std::vector<Matrix<3>> cov_;        // of the candidates
+  std::vector<std::uint32_t> place_;  // of the candidates in worked_out_
+  std::vector<MapGaussian> worked_out_;
 };
 
 }  // namespace gaussmap

@@ -3,12 +3,8 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <cstdint>
-#include <vector>
 
-#include "gaussmap/gaussian/gaussian.h"
 #include "gaussmap/io/pose.h"
-#include "registration/map_neighbours.h"
 
 namespace gaussmap {
 
@@ -27,15 +23,6 @@ struct NormalEquations {
 
   NormalEquations& operator+=(const NormalEquations& other);
 };
-
-/// Adds d^2 = sum over the axes a of a Gaussian of the map, tells_a (a' r)^2 / (variance_a + blur^2 + a' R S R' a), and
-/// its derivatives; r = R m + t - mean of the map, m and S of the scan [m, about the sensor]; blur^2 [m^2].
-void addResidual(const Gaussian<3>& gaussian, const Pose& pose, const MapGaussian& target, double blur_squared,
-                 double kernel, NormalEquations& sums);
-
-/// The normal equations of all Gaussians of a scan at a pose (about the origin of `near`).
-NormalEquations linearise(const std::vector<Gaussian<3>>& scan, const Pose& pose, MapNeighbours& near, double kernel,
-                          int threads);
 
 /// The pose moved by such a six-vector.
 Pose moved(const Pose& pose, const NormalEquations::Vector6& by);

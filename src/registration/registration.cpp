@@ -14,6 +14,7 @@
 #include "registration/map_neighbours.h"
 #include "registration/normal_equations.h"
 #include "registration/scan_gaussians.h"
+#include "registration/scan_on_map.h"
 
 namespace gaussmap {
 namespace {
@@ -66,7 +67,7 @@ void judge(const NormalEquations& sums, double range, const RegistrationOptions&
   unit.tail<3>().setConstant(1.0 / range);
   const Matrix6 scaled = unit.asDiagonal() * sums.information * unit.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Matrix6> solver(scaled);
-  const Vector6 told = solver.eigenvalues();
+  const Vector6& told = solver.eigenvalues();
   if (!(told[5] > 0.0)) return;  // what it met fills its cells
   result.degenerate = !(told[0] > options.degenerate * told[5]);
   result.weakest = solver.eigenvectors().col(0);
@@ -95,9 +96,9 @@ RegistrationResult align(const GaussianMap<3>& source, const GaussianMap<3>& map
     near->setBlur(step.blur);
     const bool final = &step == &steps.back();
     const auto& scan = !final && map.grid().side(scale) > side ? coarse : fine;
+    ScanOnMap on_map(scan, *near, options.kernel, options.threads);
     const Descent down =
-        descend([&](const Pose& where) { return linearise(scan, where, *near, options.kernel, options.threads); }, pose,
-                limitsOf(step, final, options));
+        descend([&](const Pose& where) { return on_map.linearise(where); }, pose, limitsOf(step, final, options));
     pose = down.pose;
     last = down.equations;
     result.iterations += down.iterations;

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+
+#include "gaussmap/gaussian/gaussian.h"
+#include "registration/map_neighbours.h"
+#include "registration/normal_equations.h"
+
+namespace gaussmap {
+
+/// Gaussians of a scan beside those of the map that they meet, in columns for vector registers. Each has the residual
+/// d^2 = sum over the axes a of the map's Gaussian, tells_a (a' r)^2 / (variance_a + blur^2 + a' R S R' a), where
+/// r = R m + t - mean of the map, m and S of the scan [m, about the sensor].
+class ResidualBatch {
+ public:
+  static constexpr std::size_t kCapacity = 64;
+
+  bool isFull() const { return size_ == kCapacity; }
+  /// Only where it is not full.
+  void add(const Gaussian<3>& gaussian, const MapGaussian& target);
+  /// The normal equations of all, which are then forgotten; rotation R and translation t [m], blur^2 [m^2], kernel k.
+  NormalEquations sumUp(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translation, double blur_squared,
+                        double kernel);
+
+  static constexpr std::size_t kLanes = 8;
+  using Lanes = double __attribute__((vector_size(8 * kLanes)));
+  using Column = Lanes[kCapacity / kLanes];
+  /// Covariances: xx xy xz yy yz zz.
+  struct Columns {
+    Column mean[3], cov[6], target[3], directions[3][3], variances[3], tells[3];
+  };
+
+ private:
+  Columns columns_;  // as far as size_
+  std::size_t size_ = 0;
+};
+
+}  // namespace gaussmap
