@@ -41,6 +41,7 @@ std::vector<std::filesystem::path> outputsFor(const std::vector<ScanSource>& sca
 /// Everything that can be wrong with the outputs, before any work is done. Makes the directory.
 std::vector<std::filesystem::path> checkOutputs(const CleanCommand& command, const std::vector<ScanSource>& scans) {
   std::vector<std::filesystem::path> inputs;
+  inputs.reserve(scans.size() + 1);
   for (const ScanSource& scan : scans) inputs.push_back(scan.path);
   if (!command.input.poses.empty()) inputs.emplace_back(command.input.poses);
   std::vector<std::filesystem::path> outputs;

@@ -64,6 +64,7 @@ std::vector<ScanSource> findScans(const ScanInput& input) {
   const std::vector<std::filesystem::path> paths = listScans({input.paths.begin(), input.paths.end()});
   warnOfScansGivenTwice(paths);
   std::vector<ScanPose> poses;
+  poses.reserve(paths.size());
   for (const std::filesystem::path& path : paths) poses.push_back(lookAt(path));
   if (!input.poses.empty()) {
     const std::vector<Pose> given = posesForScans(readPoseFile(input.poses), paths);
@@ -73,6 +74,7 @@ std::vector<ScanSource> findScans(const ScanInput& input) {
   if (input.frame == "sensor")
     for (const std::string& warning : diagnosis.warnings) warn(warning);
   std::vector<ScanSource> scans;
+  scans.reserve(poses.size());
   for (const ScanPose& scan : poses) scans.push_back({scan.path, normalised(scan.pose)});
   return scans;
 }
@@ -236,6 +238,7 @@ std::string perScale(const std::vector<std::size_t>& counts) {
 
 std::string perScale(const GaussianMap<3>& map) {
   std::vector<std::size_t> counts;
+  counts.reserve(std::size_t(map.scales()));
   for (int s = 0; s < map.scales(); ++s) counts.push_back(map.gaussianCount(s));
   return perScale(counts);
 }

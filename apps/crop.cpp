@@ -23,7 +23,7 @@ Box<3> boxOf(const std::vector<double>& n) {
   constexpr double kFar = std::numeric_limits<double>::infinity();
   if (n.size() != 4 && n.size() != 6)
     throw UsageError("--box: takes x0 y0 x1 y1 or x0 y0 z0 x1 y1 z1, not " + std::to_string(n.size()) + " numbers");
-  const Box<3> box =
+  Box<3> box =
       n.size() == 4 ? Box<3>{{n[0], n[1], -kFar}, {n[2], n[3], kFar}} : Box<3>{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
   if (!(box.low.array() < box.high.array()).all())
     throw UsageError("--box: takes the low corner first, and is not flat");

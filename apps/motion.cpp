@@ -10,16 +10,18 @@
 namespace gaussmap::app {
 namespace {
 
+double numberIn(const std::string& option, const std::string& word) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc() || end != word.data() + word.size())
+    throw UsageError(option + ": '" + word + "' is not a number");
+  return value;
+}
+
 std::vector<double> numbersIn(const std::string& option, const std::string& text) {
   std::vector<double> numbers;
   std::istringstream words(text);
-  for (std::string word; words >> word;) {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size())
-      throw UsageError(option + ": '" + word + "' is not a number");
-    numbers.push_back(value);
-  }
+  for (std::string word; words >> word;) numbers.push_back(numberIn(option, word));
   return numbers;
 }
 

@@ -29,12 +29,12 @@ struct Axis {
 };
 
 void drawAxes(Svg& svg, const Axis& x, const Axis& y) {
-  for (double decade = x.low; decade <= x.high; ++decade) {
+  for (int decade = int(x.low); decade <= int(x.high); ++decade) {
     const double value = std::pow(10, decade);
     svg << "<path d='M" << x.at(value) << ' ' << y.from << "V" << y.to << "' stroke='#ddd'/>\n";
     svg.text(x.at(value), y.from + 18, numberText(value), "text-anchor='middle'");
   }
-  for (double decade = y.low; decade <= y.high; ++decade) {
+  for (int decade = int(y.low); decade <= int(y.high); ++decade) {
     const double value = std::pow(10, decade);
     svg << "<path d='M" << x.from << ' ' << y.at(value) << "H" << x.to << "' stroke='#ddd'/>\n";
     svg.text(x.from - 8, y.at(value) + 4, numberText(value), "text-anchor='end'");

@@ -17,6 +17,7 @@ void run(const std::vector<std::string>& arguments) {
   std::vector<std::string> words = {viewer.string()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
+  argv.reserve(words.size() + 1);
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   execv(viewer.c_str(), argv.data());

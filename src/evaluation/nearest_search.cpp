@@ -33,9 +33,9 @@ double squaredGap(const Node& a, const Node& b) {
 struct Group {
   Node box{};
   std::size_t count = 0;  // padded to kLanes
+  double worst = 0.0;     // largest of `best`
   alignas(64) double at[3][kGroupSize];
   alignas(64) double best[kGroupSize];  // squared distance to the nearest point so far [m^2]
-  double worst = 0.0;                   // largest of `best`
 
   void fill(const PointTree& tree, std::size_t first, std::size_t size) {
     count = (size + kLanes - 1) / kLanes * kLanes;

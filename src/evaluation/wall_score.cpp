@@ -26,8 +26,8 @@ double shareNear(const std::vector<Segment>& lines, const SegmentTree& tree, con
   double all = 0.0, near = 0.0;
   for (const Segment& line : lines) {
     const double length = line.length(), pieces = std::max(1.0, std::ceil(length / options.spacing));
-    for (double i = 0.5; i < pieces; ++i) {
-      const Vector<2> point = line.start + i / pieces * (line.end - line.start);
+    for (std::size_t i = 0; i < std::size_t(pieces); ++i) {
+      const Vector<2> point = line.start + (double(i) + 0.5) / pieces * (line.end - line.start);
       all += length / pieces;
       if (tree.distance(point) <= options.tolerance) near += length / pieces;
     }

@@ -4,7 +4,7 @@
 namespace gaussmap {
 
 Vector<3> EllipsoidPose::normal() const {
-  const Vector<3> axis = rotation * Vector<3>::UnitX();
+  Vector<3> axis = rotation * Vector<3>::UnitX();
   constexpr double kNone = 1e-12;  // what rounding leaves of a zero
   for (const int i : {2, 1, 0})
     if (std::abs(axis(i)) > kNone) return axis(i) > 0.0 ? axis : Vector<3>(-axis);

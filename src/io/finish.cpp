@@ -16,6 +16,7 @@ GaussianMap<D> finish(const GaussianMap<D>& map, int finest_scale) {
     throw std::out_of_range("scale " + std::to_string(finest_scale) + ": the map has the scales 0 to " +
                             std::to_string(map.scales() - 1));
   std::vector<std::vector<char>> keep;
+  keep.reserve(std::size_t(map.scales()));
   for (int s = 0; s < map.scales(); ++s) keep.emplace_back(map.cellCount(s), s >= finest_scale ? 1 : 0);
   const GaussianMap<D> thin = thinMap<D>(map, keep);
   std::vector<MapScale<D>> scales;

@@ -22,7 +22,7 @@ std::int32_t asIndex(double value) {
 
 /// The place that means are about. A rotation would be a pose, which the cells of a map cannot have.
 Eigen::Vector3d originOf(const PcdHeader& header) {
-  const Eigen::Vector3d origin = header.viewpoint.translation;
+  Eigen::Vector3d origin = header.viewpoint.translation;
   if (!origin.allFinite() || !(header.viewpoint.rotation.vec().norm() == 0.0))
     throw std::invalid_argument("its VIEWPOINT is no plain shift");
   return origin;

@@ -95,23 +95,25 @@ class Surroundings {
   /// Their points, joined to the ranges; returns how many.
   std::uint32_t gatherThree(unsigned k, std::uint64_t octants, PlaneRanges& ranges) const {
     std::uint32_t count = 0;
+    PlaneRanges::Adder adder(ranges);
     for (; octants; octants &= octants - 1) {
       const auto bit = std::size_t(__builtin_ctzll(octants));
       const Cell& cell = *cells_[kBlocks.lowest[k] + Blocks::kCorners[bit / 8]];
-      count += ranges.add(cell.borders[bit % 8], cell.borders[bit % 8 + 1]);
+      count += adder.add(cell.borders[bit % 8], cell.borders[bit % 8 + 1]);
     }
     return count;
   }
   /// The same of what the next larger block has besides.
   std::uint32_t gatherFive(unsigned k, PlaneRanges& ranges) const {
     std::uint32_t count = 0;
+    PlaneRanges::Adder adder(ranges);
     for (std::size_t word = 0; word < 4; ++word) {
       std::uint64_t octants = 0;
       for (std::size_t j = 0; j < 8; ++j) octants |= std::uint64_t{children_[8 * word + j]} << 8 * j;
       for (octants &= kBlocks.five[k][word]; octants; octants &= octants - 1) {
         const auto bit = std::size_t(__builtin_ctzll(octants));
         const Cell& cell = *cells_[8 * word + bit / 8];
-        count += ranges.add(cell.borders[bit % 8], cell.borders[bit % 8 + 1]);
+        count += adder.add(cell.borders[bit % 8], cell.borders[bit % 8 + 1]);
       }
     }
     return count;

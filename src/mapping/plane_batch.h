@@ -19,17 +19,36 @@ class PlaneRanges {
     end_ = 0xFFFFFFFFu;
     size_ = 0;
   }
-  /// Joins it to the one before if it follows that: without a branch, which would be guessed wrongly too often. Returns
-  /// its size.
-  std::uint32_t add(std::uint32_t from, std::uint32_t to) {
-    const bool is_joined = from == end_;
-    start_ = is_joined ? start_ : from;
-    end_ = to;
-    size_ += !is_joined;
-    first_[size_] = start_;
-    last_[size_] = end_;
-    return to - from;
-  }
+
+  /// Adds some. While it lives, what a next range depends on stays in registers.
+  class Adder {
+   public:
+    explicit Adder(PlaneRanges& ranges)
+        : ranges_(ranges), start_(ranges.start_), end_(ranges.end_), size_(ranges.size_) {}
+    Adder(const Adder&) = delete;
+    Adder& operator=(const Adder&) = delete;
+    ~Adder() {
+      ranges_.start_ = start_;
+      ranges_.end_ = end_;
+      ranges_.size_ = size_;
+    }
+    /// Joins it to the one before if it follows that: without a branch, which would be guessed wrongly too often.
+    /// Returns its size.
+    std::uint32_t add(std::uint32_t from, std::uint32_t to) {
+      const bool is_joined = from == end_;
+      start_ = is_joined ? start_ : from;
+      end_ = to;
+      size_ += !is_joined;
+      ranges_.first_[size_] = start_;
+      ranges_.last_[size_] = end_;
+      return to - from;
+    }
+
+   private:
+    PlaneRanges& ranges_;
+    std::uint32_t start_, end_;
+    std::size_t size_;
+  };
 
  private:
   std::array<std::uint32_t, kCapacity + 1> first_, last_;  // from the second entry on

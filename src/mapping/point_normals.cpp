@@ -173,8 +173,9 @@ class Descent {
       if (count < min_) count += around.gatherFive(k, ranges);
       if (count < min_) {
         ranges.clear();
+        PlaneRanges::Adder adder(ranges);
         for (std::size_t i = 0; i < open.near_count; ++i)
-          ranges.add(cells_[near[i].cell].borders[0], cells_[near[i].cell].borders[8]);
+          adder.add(cells_[near[i].cell].borders[0], cells_[near[i].cell].borders[8]);
       }
       writer.add(sumUp(surface_.points.data(), ranges), queries);
     }

@@ -44,7 +44,7 @@ void expectSums(const std::vector<Point>& points, const PlaneRanges& ranges) {
 TEST(PlaneSums, AreThoseOfAPlainLoopForAnyNumberOfPoints) {
   for (const std::uint32_t count : {1u, 2u, 7u, 8u, 9u, 247u, 248u, 249u, 255u, 256u, 257u, 4099u}) {
     PlaneRanges ranges;
-    ranges.add(0, count);
+    PlaneRanges::Adder(ranges).add(0, count);
     expectSums(wholePoints(count), ranges);
   }
 }
@@ -56,7 +56,7 @@ TEST(PlaneSums, AreThoseOfAPlainLoopForAsManyRangesAsThereCanBe) {
     std::uint32_t at = 3;
     while (ranges.size() < PlaneRanges::kCapacity) {
       const auto size = std::uint32_t(1 + random() % (round % 2 ? 5 : 40));
-      ranges.add(at, at + size);
+      PlaneRanges::Adder(ranges).add(at, at + size);
       at += size + 1;
     }
     expectSums(wholePoints(at - 1), ranges);
@@ -65,17 +65,22 @@ TEST(PlaneSums, AreThoseOfAPlainLoopForAsManyRangesAsThereCanBe) {
 
 TEST(PlaneRanges, AreJoinedWhereOneFollowsAnother) {
   PlaneRanges ranges;
-  EXPECT_EQ(ranges.add(4, 9), 5u);
-  EXPECT_EQ(ranges.add(9, 10), 1u);
-  EXPECT_EQ(ranges.add(12, 15), 3u);
-  EXPECT_EQ(ranges.add(3, 4), 1u);
+  {
+    PlaneRanges::Adder adder(ranges);
+    EXPECT_EQ(adder.add(4, 9), 5u);
+    EXPECT_EQ(adder.add(9, 10), 1u);
+    EXPECT_EQ(adder.add(12, 15), 3u);
+  }
+  EXPECT_EQ(PlaneRanges::Adder(ranges).add(15, 17), 2u);  // joins what another has added
+  EXPECT_EQ(PlaneRanges::Adder(ranges).add(3, 4), 1u);
   ASSERT_EQ(ranges.size(), 3u);
   EXPECT_EQ(ranges.first(0), 4u);
   EXPECT_EQ(ranges.last(0), 10u);
+  EXPECT_EQ(ranges.last(1), 17u);
   EXPECT_EQ(ranges.first(2), 3u);
   ranges.clear();
   EXPECT_EQ(ranges.size(), 0u);
-  ranges.add(4, 6);  // follows the last one from before, which is gone
+  PlaneRanges::Adder(ranges).add(4, 6);  // follows the last one from before, which is gone
   ASSERT_EQ(ranges.size(), 1u);
   EXPECT_EQ(ranges.first(0), 4u);
 }

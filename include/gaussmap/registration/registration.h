@@ -28,12 +28,13 @@ struct RegistrationResult {
   /// Of (x, y, z [m], rotation vector about the sensor [rad]), map axes; of the last iteration. Symmetric positive
   /// definite, unless nothing of the map tells anything of the pose: then it is zero.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  /// The direction that the scan tells least about, of unit length, rotation times range.
+  Eigen::Matrix<double, 6, 1> weakest = Eigen::Matrix<double, 6, 1>::Zero();
   double fitness = 0.0;       ///< share of the scan's Gaussians within 3 standard deviations of one of the map
   double mean_squared = 0.0;  ///< of these, the mean squared Mahalanobis distance
-  bool converged = false;     ///< the last step ended before max_iterations
-  bool degenerate = true;     ///< the scan does not tell some direction (a corridor, a plain): see `weakest`
-  Eigen::Matrix<double, 6, 1> weakest = Eigen::Matrix<double, 6, 1>::Zero();  ///< of unit length, rotation times range
   int iterations = 0;
+  bool converged = false;  ///< the last step ended before max_iterations
+  bool degenerate = true;  ///< the scan does not tell some direction (a corridor, a plain): see `weakest`
 };
 
 /// Where a scan was taken: moves it onto a map, from the coarsest scale to the finest. At every scale each Gaussian of
