@@ -97,7 +97,7 @@ bool splitLine(const std::string& line, std::string& key, std::string& rest) {
   if (first == std::string::npos || line[first] == '#') return false;
   const std::size_t colon = line.find(':', first);
   if (colon == std::string::npos) return false;
-  const auto trimmed = [](std::string text) {
+  const auto trimmed = [](const std::string& text) {
     const std::size_t begin = text.find_first_not_of(" \t\r\"'"), end = text.find_last_not_of(" \t\r\"'");
     return begin == std::string::npos ? std::string() : text.substr(begin, end - begin + 1);
   };

@@ -214,6 +214,7 @@ class Updater {
     const OldTiles<D>& old = old_[static_cast<std::size_t>(s)];
     const auto cut = tilesOf<D>(after.scale(s), span_);
     std::vector<const std::pair<const CellKey<D>, std::vector<IndexRange>>*> all;
+    all.reserve(cut.size());
     for (const auto& entry : cut) all.push_back(&entry);
     TileInsert<D> insert(database_);
     std::size_t written = 0;

@@ -116,6 +116,7 @@ struct PcdReader::Body {
  private:
   void loadAscii(const std::filesystem::path& path, const PcdHeader& header) {
     std::vector<AsciiColumn> columns;
+    columns.reserve(kAxes.size());
     for (const char* const name : kAxes) columns.push_back({header.find(name)->column, isSingle(*header.find(name))});
     std::sort(columns.begin(), columns.end(),
               [](const AsciiColumn& a, const AsciiColumn& b) { return a.column < b.column; });
@@ -203,6 +204,7 @@ std::vector<std::vector<double>> PcdReader::columns(const std::vector<PcdColumn>
     const auto columnOf = [&](std::size_t i) { return fields[i]->column + wanted[i].element; };
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return columnOf(a) < columnOf(b); });
     std::vector<AsciiColumn> columns;
+    columns.reserve(order.size());
     for (const std::size_t i : order) columns.push_back({columnOf(i), isSingle(*fields[i])});
     parsePcdAscii(path_, header_, body_->data, columns);
     for (std::size_t i = 0; i < order.size(); ++i) result[order[i]] = std::move(columns[i].values);

@@ -111,6 +111,7 @@ bool isUsable(const RemovedCluster<3>& removed) {
 
 void writeRemoved(const std::filesystem::path& path, const std::vector<RemovedCluster<3>>& removed) {
   std::vector<Record> records;
+  records.reserve(removed.size());
   for (const RemovedCluster<3>& one : removed) records.push_back(toRecord(one));
   const Record none{};
   writePcd(path, records.size(), fieldsOf(records.empty() ? none : records.front()));

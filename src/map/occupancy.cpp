@@ -27,13 +27,10 @@ GaussianMap<D> withOccupancy(const GaussianMap<D>& map, std::vector<float> log_o
     throw std::invalid_argument(std::to_string(log_odds.size()) + " occupancies for the " +
                                 std::to_string(map.gaussianCount(0)) + " Gaussians of the finest scale");
   std::vector<MapScale<D>> scales;
-  for (int s = 0; s < map.scales(); ++s) {
-    scales.push_back(map.scale(s));
-    if (s == 0)
-      scales.front().log_odds = std::move(log_odds);
-    else
-      inheritOccupancy<D>(scales[scales.size() - 2], scales.back());
-  }
+  scales.reserve(std::size_t(map.scales()));
+  for (int s = 0; s < map.scales(); ++s) scales.push_back(map.scale(s));
+  scales.front().log_odds = std::move(log_odds);
+  for (std::size_t s = 1; s < scales.size(); ++s) inheritOccupancy<D>(scales[s - 1], scales[s]);
   return GaussianMap<D>(map.options(), std::move(scales));
 }
 

@@ -166,9 +166,12 @@ RefinedMap refineToBytes(const GaussianMap<3>& map, std::uintmax_t max_bytes,
     const double share = (allowed - fits_bytes) / (too_many_bytes - fits_bytes);
     next = too_large == 0.0 ? 2.0 * fits : fits + std::clamp(share, 0.1, 0.9) * (too_large - fits);
   }
-  for (double step = kPrecision; fits > 1.0; fits /= step, step *= step) {  // once, unless the curves are too much
+  double step = kPrecision;
+  while (fits > 1.0) {  // once, unless the curves are too much
     RefinedMap best = refineWithCurves(map, with(fits), curve);
     if (bytesOf(best) <= max_bytes) return best;
+    fits /= step;
+    step *= step;
   }
   RefinedMap one_per_cell = refineWithCurves(map, with(1.0), curve);
   const std::uintmax_t least = bytesOf(one_per_cell);

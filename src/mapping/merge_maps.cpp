@@ -163,6 +163,7 @@ class Merger {
   std::vector<int> closestTogether(const std::vector<Source<D>>& sources, std::size_t parts) const {
     if (parts == 1) return std::vector<int>(sources.size(), 0);
     std::vector<Gaussian<D>> data;
+    data.reserve(sources.size());
     for (const Source<D>& source : sources) data.push_back(source.gaussian);
     const std::vector<double> areas(data.size(), 1.0);
     blurForClustering(data, a_.grid().side(0));
@@ -177,6 +178,7 @@ class Merger {
     for (std::size_t i = 0; i < sources.size(); ++i)
       members[static_cast<std::size_t>(label[i])].push_back(sources[i].gaussian);
     std::vector<Gaussian<D>> matches;
+    matches.reserve(parts);
     for (const std::vector<Gaussian<D>>& part : members) matches.push_back(merge(part));
     return matches;
   }

@@ -114,6 +114,26 @@ vtkSmartPointer<vtkActor> ellipsoidActor(const std::vector<Glyph>& glyphs, const
   return actor;
 }
 
+vtkSmartPointer<vtkActor> centreActor(const std::vector<Glyph>& glyphs, const std::vector<Colour>& colours) {
+  constexpr std::size_t kMost = 60000;
+  const std::size_t step = (glyphs.size() + kMost - 1) / kMost;
+  vtkNew<vtkPoints> centres;
+  vtkNew<vtkCellArray> cells;
+  std::vector<Colour> chosen;
+  for (std::size_t i = 0; i < glyphs.size(); i += step) {
+    cells->InsertNextCell({centres->InsertNextPoint(glyphs[i].centre.data())});
+    chosen.push_back(colours[i]);
+  }
+  vtkNew<vtkPolyData> data;
+  data->SetPoints(centres);
+  data->SetVerts(cells);
+  data->GetPointData()->SetScalars(colourArray(chosen));
+  const auto actor = actorOf(data);
+  actor->GetProperty()->LightingOff();
+  actor->GetProperty()->SetPointSize(3.0f);
+  return actor;
+}
+
 vtkSmartPointer<vtkActor> cubeActor(const std::vector<Cube>& cubes) {
   vtkNew<vtkPoints> corners;
   vtkNew<vtkCellArray> edges;

@@ -24,6 +24,9 @@ std::pair<int, int> facetsFor(std::size_t glyphs);
 vtkSmartPointer<vtkActor> ellipsoidActor(const std::vector<Glyph>& glyphs, const std::vector<Colour>& colours,
                                          vtkPolyData* sphere);
 
+/// Their centres as coloured points, of many an even choice: what a machine without a graphics card can turn.
+vtkSmartPointer<vtkActor> centreActor(const std::vector<Glyph>& glyphs, const std::vector<Colour>& colours);
+
 struct Cube {
   Vector<3> centre;
   double side;

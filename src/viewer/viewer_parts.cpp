@@ -73,8 +73,7 @@ void Viewer::Parts::check() const {
 
 void Viewer::Parts::build(int width, int height) {
   renderer->RemoveAllViewProps();
-  still.clear();
-  moving.clear();
+  ellipsoids.clear();
   if (renderer->GetLights()->GetNumberOfItems() == 0) {
     vtkNew<vtkLightKit> lights;  // a key light from above, weaker ones from elsewhere, all moving with the eye
     lights->SetKeyLightIntensity(0.75);
@@ -143,18 +142,19 @@ void Viewer::Parts::addEllipsoids(const std::vector<GaussianId>& gaussians, cons
       return std::decay_t<decltype(all)>(all.begin() + first, all.begin() + last);
     };
     const auto [fine, coarse] = facetsFor(last - first);
-    still.push_back(ellipsoidActor(part(glyphs), part(shades), unitSphere(fine)));
-    moving.push_back(ellipsoidActor(part(glyphs), part(shades), unitSphere(coarse)));
-    renderer->AddActor(still.back());
-    renderer->AddActor(moving.back());
+    ellipsoids[Detail::Round].push_back(ellipsoidActor(part(glyphs), part(shades), unitSphere(fine)));
+    ellipsoids[Detail::FewTriangles].push_back(ellipsoidActor(part(glyphs), part(shades), unitSphere(coarse)));
   }
-  setMoving(false);
+  ellipsoids[Detail::Point].push_back(centreActor(glyphs, shades));
+  for (const auto& [detail, actors] : ellipsoids)
+    for (const auto& actor : actors) renderer->AddActor(actor);
+  setDetail(Detail::Round);
   for (const auto& actor : colourBar(colouring, height)) renderer->AddActor2D(actor);
 }
 
-void Viewer::Parts::setMoving(bool is_moving) {
-  for (const auto& actor : still) actor->SetVisibility(!is_moving);
-  for (const auto& actor : moving) actor->SetVisibility(is_moving);
+void Viewer::Parts::setDetail(Detail detail) {
+  for (const auto& [of, actors] : ellipsoids)
+    for (const auto& actor : actors) actor->SetVisibility(of == detail);
 }
 
 void Viewer::Parts::addCells(const std::vector<int>& scales, double lift) {

@@ -13,6 +13,9 @@
 
 namespace gaussmap {
 
+/// How much of each ellipsoid is drawn.
+enum class Detail { Round, FewTriangles, Point };
+
 /// What a viewer keeps: the scene, what is shown of it, and VTK's renderer with it.
 struct Viewer::Parts {
   ViewScene scene;
@@ -20,17 +23,17 @@ struct Viewer::Parts {
   ViewPoint first_view;                  // what the key r goes back to
   Vector<3> origin = Vector<3>::Zero();  ///< of all actors [m, map frame]
   vtkNew<vtkRenderer> renderer;
-  bool is_aimed = false;                                 ///< false: the camera is to be placed anew
-  std::vector<vtkSmartPointer<vtkActor>> still, moving;  ///< ellipsoids while the view stands or moves
-  std::map<int, std::vector<double>> errors;             ///< of a scale, once asked for
+  bool is_aimed = false;                                                ///< false: the camera is to be placed anew
+  std::map<Detail, std::vector<vtkSmartPointer<vtkActor>>> ellipsoids;  ///< those of one detail are visible
+  std::map<int, std::vector<double>> errors;                            ///< of a scale, once asked for
 
   const GaussianMap<3>* map() const { return std::get_if<GaussianMap<3>>(&scene.map); }
   /// Throws std::invalid_argument as Viewer().
   void check() const;
   /// Fills the renderer for a picture of this size.
   void build(int width, int height);
-  /// Shows the ellipsoids with few triangles while the view moves.
-  void setMoving(bool is_moving);
+  /// Of the ellipsoids: Round after build().
+  void setDetail(Detail detail);
   bool press(const std::string& key);
   Vector<3> up() const { return options.up.normalized(); }
 

@@ -3,6 +3,7 @@
 #include <vtkRenderWindow.h>
 #include <vtkRenderWindowInteractor.h>
 
+#include <chrono>
 #include <stdexcept>
 
 #include "viewer/off_screen_window.h"
@@ -11,7 +12,9 @@
 namespace gaussmap {
 namespace {
 
-/// VTK's way to turn, shift and zoom, with our keys; few triangles while the view moves.
+constexpr double kSlow = 0.1;  // of a picture while the view moves [s]: the hand goes on before the eye
+
+/// VTK's way to turn, shift and zoom, with our keys; few triangles while the view moves, points where that is slow.
 class Style : public vtkInteractorStyleTrackballCamera {
  public:
   static Style* New() {
@@ -20,6 +23,7 @@ class Style : public vtkInteractorStyleTrackballCamera {
     return made;
   }
   Viewer::Parts* parts = nullptr;
+  Detail moving = Detail::FewTriangles;  // while the view moves
 
   void OnChar() override {}  // VTK's own keys
   void OnKeyPress() override {
@@ -31,18 +35,28 @@ class Style : public vtkInteractorStyleTrackballCamera {
     }
   }
   void rebuild() {
+    moving = Detail::FewTriangles;
     const int* const size = this->Interactor->GetRenderWindow()->GetSize();
     parts->build(size[0], size[1]);
     this->Interactor->Render();
   }
   void StartState(int state) override {
-    parts->setMoving(true);
+    parts->setDetail(moving);
     vtkInteractorStyleTrackballCamera::StartState(state);
   }
   void StopState() override {
-    parts->setMoving(false);
+    parts->setDetail(Detail::Round);
     vtkInteractorStyleTrackballCamera::StopState();
     this->Interactor->Render();
+  }
+  void OnMouseMove() override {
+    const auto start = std::chrono::steady_clock::now();
+    vtkInteractorStyleTrackballCamera::OnMouseMove();
+    if (this->State == VTKIS_NONE || moving == Detail::Point) return;
+    this->Interactor->GetRenderWindow()->WaitForCompletion();
+    if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() < kSlow) return;
+    moving = Detail::Point;
+    parts->setDetail(moving);
   }
 
  protected:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap_frame_times MAP: how long a picture takes while a view of a map's scale turns, and when it stands, with the
-// driver that draws named: what `gaussmap view` feels like. Without a display too, then by software.
+// gaussmap_frame_times MAP: how long a picture takes while a view of a map's scale turns (few triangles, or points
+// where that is slow), and when it stands, with the driver that draws named: what `gaussmap view` feels like. Without a
+// display too, then by software.
 #include <vtkCamera.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
@@ -58,12 +59,15 @@ void measure(const char* path) {
     window->AddRenderer(parts.renderer);
     window->Render();
     if (scale == scaleToShow(map)) std::printf("%s, %d x %d\n", driverOf(*window).c_str(), kWidth, kHeight);
-    parts.setMoving(true);
-    const double moving = medianMilliseconds(*window, *parts.renderer, 20);
-    parts.setMoving(false);
-    const double still = medianMilliseconds(*window, *parts.renderer, 5);
-    std::printf("scale %d, %zu Gaussians: %.1f ms a picture while it turns, %.1f ms when it stands\n", scale,
-                map.gaussianCount(scale), moving, still);
+    const auto millisecondsOf = [&](Detail detail, int pictures) {
+      parts.setDetail(detail);
+      return medianMilliseconds(*window, *parts.renderer, pictures);
+    };
+    const double moving = millisecondsOf(Detail::FewTriangles, 20), points = millisecondsOf(Detail::Point, 20),
+                 still = millisecondsOf(Detail::Round, 5);
+    std::printf(
+        "scale %d, %zu Gaussians: %.1f ms a picture while it turns, %.1f ms as points, %.1f ms when it stands\n", scale,
+        map.gaussianCount(scale), moving, points, still);
     window->RemoveRenderer(parts.renderer);
   }
 }

@@ -3,11 +3,14 @@
 #include "gaussmap/viewer/viewer.h"
 
 #include <gtest/gtest.h>
+#include <vtkDataSet.h>
+#include <vtkMapper.h>
 
 #include <cmath>
 
 #include "gaussmap/mapping/build.h"
 #include "map/random_clouds.h"
+#include "viewer/viewer_parts.h"
 
 namespace gaussmap::test {
 namespace {
@@ -140,6 +143,32 @@ TEST(Viewer, RefusesWhatItCannotShow) {
   refuses([](ViewOptions& options) { options.view.zoom = -1.0; });
   refuses([](ViewOptions& options) { options.view.direction.setZero(); });
   refuses([](ViewOptions& options) { options.up.setConstant(std::nan("")); });
+}
+
+TEST(Viewer, ShowsTheEllipsoidsInOneDetailAtATime) {
+  Viewer::Parts parts;
+  parts.scene.map = build<3>(randomCloud<3>(3000, 3), {0.1, 3, 3, 0.0});
+  const GaussianMap<3>& map = *parts.map();
+  parts.options.hierarchy = true;  // every scale has actors of its own
+  parts.build(200, 100);
+  const auto visible = [&] {
+    std::vector<Detail> details;
+    for (const auto& [detail, actors] : parts.ellipsoids)
+      for (const auto& actor : actors)
+        if (actor->GetVisibility()) details.push_back(detail);
+    return details;
+  };
+  EXPECT_EQ(visible(), std::vector<Detail>(3, Detail::Round));
+  parts.setDetail(Detail::FewTriangles);
+  EXPECT_EQ(visible(), std::vector<Detail>(3, Detail::FewTriangles));
+  parts.setDetail(Detail::Point);
+  EXPECT_EQ(visible(), std::vector<Detail>(1, Detail::Point));
+  vtkMapper* const mapper = parts.ellipsoids[Detail::Point][0]->GetMapper();
+  mapper->Update();
+  EXPECT_EQ(std::size_t(mapper->GetInput()->GetNumberOfPoints()),
+            map.gaussianCount(0) + map.gaussianCount(1) + map.gaussianCount(2));
+  for (const auto& [detail, actors] : parts.ellipsoids)
+    for (const auto& actor : actors) EXPECT_TRUE(parts.renderer->HasViewProp(actor));
 }
 
 }  // namespace
