@@ -22,21 +22,21 @@ void inheritOccupancy(const MapScale<D>& finer, MapScale<D>& coarse) {
 }
 
 template <int D>
-GaussianMap<D> withOccupancy(const GaussianMap<D>& map, std::vector<float> log_odds) {
+GaussianMap<D> withOccupancy(const GaussianMap<D>& map, const std::vector<float>& log_odds) {
   if (log_odds.size() != map.gaussianCount(0))
     throw std::invalid_argument(std::to_string(log_odds.size()) + " occupancies for the " +
                                 std::to_string(map.gaussianCount(0)) + " Gaussians of the finest scale");
   std::vector<MapScale<D>> scales;
   scales.reserve(std::size_t(map.scales()));
   for (int s = 0; s < map.scales(); ++s) scales.push_back(map.scale(s));
-  scales.front().log_odds = std::move(log_odds);
+  scales.front().log_odds = log_odds;
   for (std::size_t s = 1; s < scales.size(); ++s) inheritOccupancy<D>(scales[s - 1], scales[s]);
   return GaussianMap<D>(map.options(), std::move(scales));
 }
 
 #define GAUSSMAP_INSTANTIATE(D)                                        \
   template void inheritOccupancy<D>(const MapScale<D>&, MapScale<D>&); \
-  template GaussianMap<D> withOccupancy<D>(const GaussianMap<D>&, std::vector<float>);
+  template GaussianMap<D> withOccupancy<D>(const GaussianMap<D>&, const std::vector<float>&);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)
 #undef GAUSSMAP_INSTANTIATE

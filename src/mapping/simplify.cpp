@@ -61,6 +61,7 @@ template <int D>
 GaussianMap<D> simplify(GaussianMap<D> map, const SimplifyOptions& options) {
   check(map, options);
   std::vector<MapScale<D>> scales;
+  scales.reserve(std::size_t(map.scales()));
   for (int s = 0; s < map.scales(); ++s) scales.push_back(map.scale(s));
   std::vector<double> areas, finer_areas;
   bool changed = false;

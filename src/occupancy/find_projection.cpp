@@ -25,7 +25,7 @@ int sectorOf(const Eigen::Vector3d& point) {
   if (!(width > 0.0)) return 0;
   const double along = 1.0 - point.x() / width;  // 0 ... 2 from x to -x, on either side
   const double turn = point.y() < 0.0 ? 4.0 - along : along;
-  return std::min(static_cast<int>(turn * (kSectors / 4)), kSectors - 1);
+  return std::min(static_cast<int>(0.25 * turn * kSectors), kSectors - 1);
 }
 
 /// What the beams of a scan look like.
@@ -215,10 +215,12 @@ std::optional<PlanarProjection> findPlanarProjection(const std::vector<Eigen::Ve
     double middle() const { return (t - focal() * s) / n; }
   } across, down;
   const auto forEach = [&](const auto& body) {
-    for (std::size_t i = 0; i < points.size(); ++i)
-      if (points[i].allFinite() && points[i].z() > 0.0)
-        body(points[i].x() / points[i].z(), static_cast<double>(i % static_cast<std::size_t>(columns)),
-             points[i].y() / points[i].z(), static_cast<double>(i / static_cast<std::size_t>(columns)));
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (!points[i].allFinite() || !(points[i].z() > 0.0)) continue;
+      const std::size_t row = i / static_cast<std::size_t>(columns), column = i % static_cast<std::size_t>(columns);
+      body(points[i].x() / points[i].z(), static_cast<double>(column), points[i].y() / points[i].z(),
+           static_cast<double>(row));
+    }
   };
   forEach([&](double x, double column, double y, double row) {
     across.add(x, column);

@@ -97,6 +97,7 @@ void setParts(OnlineCells<D>& cells, std::uint32_t i, int scale, const Dendrogra
   std::vector<std::vector<Gaussian<D>>> members(parts);
   for (std::size_t j = 0; j < data.size(); ++j) members[static_cast<std::size_t>(of[j])].push_back(data[j]);
   std::vector<Gaussian<D>> references;
+  references.reserve(parts);
   for (const std::vector<Gaussian<D>>& part : members) references.push_back(merge(part));
   recluster(cells, i, scale, references, of);
 }
@@ -114,11 +115,10 @@ std::priority_queue<Entry> queueOf(const OnlineCells<D>& cells, int scale, doubl
   return std::priority_queue<Entry>(std::less<Entry>(), std::move(entries));
 }
 
-/// Cuts a cell into one cluster more or less.
+/// Cuts a cell into so many clusters.
 template <int D>
-void changeParts(OnlineCells<D>& cells, std::uint32_t i, int scale, int by) {
+void cutInto(std::size_t parts, OnlineCells<D>& cells, std::uint32_t i, int scale) {
   const Dendrogram dendrogram = dendrogramOf(cells, i, scale, cells.dataUnder(i, scale));
-  const auto parts = static_cast<std::size_t>(static_cast<int>(cells.cell(i, scale).clusters.size()) + by);
   setParts(cells, i, scale, dendrogram, std::min(parts, dendrogram.size));
   noteGains(cells.cell(i, scale), dendrogram);
 }
@@ -128,7 +128,7 @@ template <int D>
 std::uint32_t takeOne(OnlineCells<D>& cells, int scale, std::priority_queue<Entry>& rich) {
   const auto from = static_cast<std::uint32_t>(-rich.top().second);
   rich.pop();
-  changeParts(cells, from, scale, -1);
+  cutInto(cells.cell(from, scale).clusters.size() - 1, cells, from, scale);
   if (cells.cell(from, scale).spare > 0.0) rich.emplace(-cells.cell(from, scale).spare, -std::int64_t{from});
   return from;
 }
@@ -206,7 +206,7 @@ void refineVisible(OnlineCells<D>& cells, const OnlineScan<D>& scan, const Onlin
         insertOne(cells, next, scale);
         continue;
       }
-      changeParts(cells, next, scale, +1);
+      cutInto(cells.cell(next, scale).clusters.size() + 1, cells, next, scale);
       if (cells.cell(next, scale).need > 0.0) needy.emplace(cells.cell(next, scale).need, -std::int64_t{next});
     }
     statistics.added += given;

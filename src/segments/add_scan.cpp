@@ -45,11 +45,11 @@ SegmentStatistics SegmentFitter::State::add(const LaserScan& original) {
   }
   const std::size_t known = touched.size();
   for (const BeamRun& run : runs)
-    for (std::size_t i = run.first, last = i; i < run.last; i = last) {
-      last = i + 1;
+    for (std::size_t i = run.first; i < run.last; ++i) {
       if (owners[i] != kNone) continue;
-      while (last < run.last && owners[last] == kNone) ++last;
-      createFrom(beams, i, last, owners, touched);
+      const std::size_t first = i;
+      while (i + 1 < run.last && owners[i + 1] == kNone) ++i;
+      createFrom(beams, first, i + 1, owners, touched);
     }
   statistics.created = touched.size() - known;
 

@@ -8,10 +8,10 @@ Cell& CellRow::at(int index) {
     first_ = index;
     cells_.resize(1);
   } else if (index < first_) {
-    cells_.insert(cells_.begin(), static_cast<std::size_t>(first_ - index), Cell());
+    cells_.insert(cells_.begin(), static_cast<std::size_t>(std::int64_t{first_} - index), Cell());
     first_ = index;
   } else if (index >= last()) {
-    cells_.resize(static_cast<std::size_t>(index - first_ + 1));
+    cells_.resize(static_cast<std::size_t>(std::int64_t{index} - first_ + 1));
   }
   return cells_[static_cast<std::size_t>(index - first_)];
 }

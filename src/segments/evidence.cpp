@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -66,8 +67,8 @@ class ParticleSets : public EvidenceKeeper {
       last = std::max(last, bins.back());
     }
     // A counting sort, then the places of the first `limit` of each bin.
-    std::vector<std::size_t> ends(static_cast<std::size_t>(last - first + 2), 0);
-    for (const int bin : bins) ++ends[static_cast<std::size_t>(bin - first + 1)];
+    std::vector<std::size_t> ends(static_cast<std::size_t>(std::int64_t{last} - first + 2), 0);
+    for (const int bin : bins) ++ends[static_cast<std::size_t>(std::int64_t{bin} - first + 1)];
     for (std::size_t i = 1; i < ends.size(); ++i) ends[i] += ends[i - 1];
     std::vector<Particle> sorted(bins.size());
     std::vector<std::size_t> at = ends;

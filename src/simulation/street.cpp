@@ -20,15 +20,22 @@ void addBuildings(TriangleMesh& mesh, double side) {
   }
 }
 
+/// From the first to the end of the street, `step` [m] apart.
+std::vector<double> placesAlong(double first, double step) {
+  std::vector<double> places;
+  while (first + step * double(places.size()) < 130.0) places.push_back(first + step * double(places.size()));
+  return places;
+}
+
 void addTrees(TriangleMesh& mesh, double side) {
-  for (double x = -4 + 7 * side; x < 130; x += 30) {
+  for (const double x : placesAlong(-4 + 7 * side, 30)) {
     append(mesh, cylinderMesh({{x, 6.2 * side, kKerb}, {0, 0, 3.4}, 0.16}, 16));
     append(mesh, ellipsoidMesh({x, 6.2 * side, 4.3}, {1.5, 1.5, 1.3}, 32));
   }
 }
 
 void addCars(TriangleMesh& mesh, double side) {
-  for (double x = 3 + 6 * side; x < 130; x += 25) {
+  for (const double x : placesAlong(3 + 6 * side, 25)) {
     append(mesh, boxMesh({x, 4 * side - 0.88, 0.25}, {x + 4.3, 4 * side + 0.88, 0.95}));
     append(mesh, boxMesh({x + 1.0, 4 * side - 0.75, 0.95}, {x + 3.4, 4 * side + 0.75, 1.45}));
   }
@@ -48,7 +55,7 @@ TriangleMesh streetMesh() {
     addBuildings(mesh, side);
     addTrees(mesh, side);
     addCars(mesh, side);
-    for (double x = -12 + 5 * side; x < 130; x += 20)
+    for (const double x : placesAlong(-12 + 5 * side, 20))
       append(mesh, cylinderMesh({{x, 5.5 * side, kKerb}, {0, 0, 6}, 0.1}, 16));
   }
   append(mesh, boxMesh({60, 7.0, kKerb}, {90, 7.05, 1.2}));  // a fence

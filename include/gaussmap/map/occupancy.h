@@ -16,6 +16,6 @@ void inheritOccupancy(const MapScale<D>& finer, MapScale<D>& coarse);
 /// Gaussian with nothing under it keeps what the map said of it.
 /// Throws std::invalid_argument unless there is a finite one for every Gaussian of the finest scale.
 template <int D>
-GaussianMap<D> withOccupancy(const GaussianMap<D>& map, std::vector<float> log_odds);
+GaussianMap<D> withOccupancy(const GaussianMap<D>& map, const std::vector<float>& log_odds);
 
 }  // namespace gaussmap
