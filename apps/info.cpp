@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // gaussmap info MAP: what is in a map file.
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 
@@ -55,10 +56,21 @@ void addLeaves(const GaussianMap<3>& map, Json& scales) {
 }
 
 /// The error curves that the map was refined by; nothing if there are none.
+bool isCurve(const Json& curve) {
+  if (!curve.is_object() || !curve.value("scale", Json()).is_number_integer()) return false;
+  const Json points = curve.value("points", Json());
+  return points.is_array() && !points.empty() && std::all_of(points.begin(), points.end(), [](const Json& point) {
+           return point.is_object() && point.value("gaussians", Json()).is_number_unsigned() &&
+                  point["gaussians"] > 0 && point.value("q95", Json()).is_number() &&
+                  point.value("mean", Json()).is_number();
+         });
+}
+
+/// Empty where there are none, or what is there is something else.
 Json curvesOf(const MapMetadata& metadata) {
   const auto entry = metadata.find("error_curves");
   const Json curves = entry == metadata.end() ? Json() : Json::parse(entry->second, nullptr, false);
-  return curves.is_array() ? curves : Json::array();
+  return curves.is_array() && std::all_of(curves.begin(), curves.end(), isCurve) ? curves : Json::array();
 }
 
 void printCurves(const Json& curves) {

@@ -20,7 +20,8 @@ class PlaneRanges {
     size_ = 0;
   }
 
-  /// Adds some. While it lives, what a next range depends on stays in registers.
+  /// Adds some. While it lives, what a next range depends on stays in registers: the ranges know of what was added once
+  /// it is gone. One at a time.
   class Adder {
    public:
     explicit Adder(PlaneRanges& ranges)

@@ -28,7 +28,8 @@ class MapNeighbours {
   double blur() const { return blur_; }
 
   /// The list of the cells around a point [m, about the origin], made if need be. Not thread-safe. kNone beyond all
-  /// cells. `hint`: a list that is right if the point has not moved far, or kNone.
+  /// cells. `hint`: a list that is right if the point has not moved far, or kNone; within the rounding of the
+  /// lattice either list of a border may come.
   std::uint32_t listAt(const Vector<3>& point, std::uint32_t hint = kNone) {
     if (hint != kNone && (point - lists_[hint].corner).cwiseAbs().maxCoeff() <= half_side_) return hint;
     return findList(point);
@@ -72,7 +73,7 @@ class MapNeighbours {
   const double half_side_;
   double blur_ = 0.0;
   KeyIndex cell_index_, parent_index_, list_index_;
-  std::vector<Cell> cells_;                // all of the map below the parents
+  std::vector<Cell> cells_;  // of the map: all below the parents, or, at the coarsest scale, those that were found
   std::vector<CellKey<3>> parents_, low_;  // entered so far; of the lists' cells, those of lowest coordinates
   std::vector<List> lists_;
   std::vector<std::uint32_t> members_;  // candidates, list after list

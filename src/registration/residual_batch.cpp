@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "registration/residual_batch.h"
 
-#include <array>
-
 #include "common/clones.h"
 
 namespace gaussmap {

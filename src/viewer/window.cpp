@@ -12,7 +12,8 @@
 namespace gaussmap {
 namespace {
 
-constexpr double kSlow = 0.1;  // of a picture while the view moves [s]: the hand goes on before the eye
+constexpr double kSlow = 0.1;               // of a picture while the view moves [s]: the hand goes on before the eye
+constexpr unsigned long kWheelRests = 300;  // after its last notch [ms]
 
 /// VTK's way to turn, shift and zoom, with our keys; few triangles while the view moves, points where that is slow.
 class Style : public vtkInteractorStyleTrackballCamera {
@@ -23,7 +24,6 @@ class Style : public vtkInteractorStyleTrackballCamera {
     return made;
   }
   Viewer::Parts* parts = nullptr;
-  Detail moving = Detail::FewTriangles;  // while the view moves
 
   void OnChar() override {}  // VTK's own keys
   void OnKeyPress() override {
@@ -35,32 +35,69 @@ class Style : public vtkInteractorStyleTrackballCamera {
     }
   }
   void rebuild() {
-    moving = Detail::FewTriangles;
     const int* const size = this->Interactor->GetRenderWindow()->GetSize();
     parts->build(size[0], size[1]);
+    moving_ = Detail::FewTriangles;
+    slow_pictures_ = 0;
+    if (this->State != VTKIS_NONE) parts->setDetail(moving_);
     this->Interactor->Render();
   }
+
   void StartState(int state) override {
-    parts->setDetail(moving);
+    parts->setDetail(moving_);
     vtkInteractorStyleTrackballCamera::StartState(state);
   }
-  void StopState() override {
-    parts->setDetail(Detail::Round);
+  void StopState() override {  // draws
+    if (!is_in_wheel_) parts->setDetail(Detail::Round);
     vtkInteractorStyleTrackballCamera::StopState();
-    this->Interactor->Render();
   }
   void OnMouseMove() override {
-    const auto start = std::chrono::steady_clock::now();
-    vtkInteractorStyleTrackballCamera::OnMouseMove();
-    if (this->State == VTKIS_NONE || moving == Detail::Point) return;
-    this->Interactor->GetRenderWindow()->WaitForCompletion();
-    if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() < kSlow) return;
-    moving = Detail::Point;
-    parts->setDetail(moving);
+    if (this->State == VTKIS_NONE) return vtkInteractorStyleTrackballCamera::OnMouseMove();
+    move(1, [&] { vtkInteractorStyleTrackballCamera::OnMouseMove(); });
+  }
+  void OnMouseWheelForward() override {
+    turnWheel([&] { vtkInteractorStyleTrackballCamera::OnMouseWheelForward(); });
+  }
+  void OnMouseWheelBackward() override {
+    turnWheel([&] { vtkInteractorStyleTrackballCamera::OnMouseWheelBackward(); });
+  }
+  void OnTimer() override {
+    if (this->State != VTKIS_NONE) return;
+    parts->setDetail(Detail::Round);
+    this->Interactor->Render();
   }
 
  protected:
   Style() = default;
+
+ private:
+  /// Draws so many pictures of a moving view.
+  template <typename Draw>
+  void move(int pictures, const Draw& draw) {
+    const auto start = std::chrono::steady_clock::now();
+    draw();
+    if (moving_ == Detail::Point) return;
+    this->Interactor->GetRenderWindow()->WaitForCompletion();
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    slow_pictures_ = took.count() > pictures * kSlow ? slow_pictures_ + pictures : 0;
+    if (slow_pictures_ < 2) return;  // one may have had to wait for something else
+    moving_ = Detail::Point;
+    if (this->State != VTKIS_NONE) parts->setDetail(moving_);
+  }
+  /// A notch is a motion of its own: what stands is drawn when no other follows.
+  template <typename Draw>
+  void turnWheel(const Draw& draw) {
+    this->Interactor->DestroyTimer(wheel_timer_);
+    is_in_wheel_ = true;
+    move(2, draw);
+    is_in_wheel_ = false;
+    wheel_timer_ = this->Interactor->CreateOneShotTimer(kWheelRests);
+  }
+
+  Detail moving_ = Detail::FewTriangles;  // while the view moves
+  int slow_pictures_ = 0;                 // in a row
+  bool is_in_wheel_ = false;
+  int wheel_timer_ = 0;
 };
 
 }  // namespace

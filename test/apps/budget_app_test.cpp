@@ -90,6 +90,37 @@ TEST_F(BudgetApps, KeepTheErrorCurvesAndDrawThem) {
   EXPECT_EQ(runApp({"info", scene("one.gmap"), "--plot", own("none.svg")}).code, 1) << "no curve to draw";
 }
 
+TEST_F(BudgetApps, TakeErrorCurvesThatAreNoneForNone) {
+  const GaussianMapOctree map = loadMap<3>(scene("one.gmap"));
+  const std::string points = R"([{"scale":1,"points":[{"gaussians":GAUSSIANS,"q95":Q95,"mean":0.1}]}])";
+  const auto curve = [&](const std::string& gaussians, const std::string& q95) {
+    std::string text = points;
+    text.replace(text.find("GAUSSIANS"), 9, gaussians);
+    return text.replace(text.find("Q95"), 3, q95);
+  };
+  const std::vector<std::string> none = {"",
+                                         R"({"scale":1})",
+                                         "[1]",
+                                         R"([{"scale":1,"points":[]}])",
+                                         R"([{"points":[]}])",
+                                         curve("0", "0.2"),
+                                         curve("-3", "0.2"),
+                                         "[",
+                                         curve("3", "null"),
+                                         curve("1e999", "0.2"),
+                                         curve("\"3\"", "0.2")};
+  for (const std::string& text : none) {
+    saveMap<3>(map, own("lying.gmap"), {{"error_curves", text}}, {true, 3, 0});
+    EXPECT_EQ(runApp({"info", own("lying.gmap")}).code, 0) << text;
+    const Outcome plot = runApp({"info", own("lying.gmap"), "--plot", own("lying.svg")});
+    EXPECT_EQ(plot.code, 1) << text;
+    EXPECT_NE(plot.err.find("has no error curves"), std::string::npos) << text << ": " << plot.err;
+    EXPECT_FALSE(std::filesystem::exists(own("lying.svg")));
+  }
+  saveMap<3>(map, own("lying.gmap"), {{"error_curves", curve("3", "0.2")}}, {true, 3, 0});
+  EXPECT_EQ(runApp({"info", own("lying.gmap"), "--plot", own("honest.svg")}).code, 0);
+}
+
 TEST_F(BudgetApps, StillKnowTheMethodOfThePaper) {
   ASSERT_EQ(refineWith("insert.gmap", {"--method", "insert", "--budget", "2"}).code, 0);
   ASSERT_EQ(refineWith("agglomerate.gmap", {"--budget", "2"}).code, 0);

@@ -19,6 +19,7 @@ class Prepared {
 
 struct Method {
   std::string name;
+  double wanted;  ///< so many times as long as ours from near; 0: nothing was hoped for
   std::function<std::unique_ptr<Prepared>(const ScanPair&)> prepare;
 };
 

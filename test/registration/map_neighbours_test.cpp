@@ -8,15 +8,14 @@
 
 #include "gaussmap/gaussian/random.h"
 #include "gaussmap/mapping/build.h"
+#include "gaussmap/mapping/compress.h"
 
 namespace gaussmap {
 namespace {
 
-TEST(MapNeighbours, FindTheNearestOfTheEightCellsAroundAPoint) {
+/// Of every scale of a map with points from 0 to 4 m, and 2 m upwards.
+void expectTheNearest(const GaussianMapOctree& map) {
   Random random(3);
-  std::vector<Vector<3>> points;
-  for (int i = 0; i < 3000; ++i) points.emplace_back(4 * random.uniform(), 4 * random.uniform(), 2 * random.uniform());
-  const GaussianMapOctree map = build<3>(points, {0.5, 2, 3, 0.0});
   const Vector<3> origin(1.0, 2.0, 0.5);
   for (const int scale : {0, 1, 2}) {
     const double blur = 0.1, side = map.grid().side(scale);
@@ -48,6 +47,27 @@ TEST(MapNeighbours, FindTheNearestOfTheEightCellsAroundAPoint) {
   }
   MapNeighbours near(map, 0, origin);
   EXPECT_EQ(near.listAt(Vector<3>(1e300, 0, 0)), MapNeighbours::kNone);
+}
+
+std::vector<Vector<3>> pointsWithin(const Vector<3>& size) {
+  Random random(2);
+  std::vector<Vector<3>> points;
+  for (int i = 0; i < 3000; ++i)
+    points.push_back(size.cwiseProduct(Vector<3>(random.uniform(), random.uniform(), random.uniform())));
+  return points;
+}
+
+TEST(MapNeighbours, FindTheNearestOfTheEightCellsAroundAPoint) {
+  expectTheNearest(build<3>(pointsWithin({4, 4, 2}), {0.5, 2, 3, 0.0}));
+}
+
+TEST(MapNeighbours, FindWhatIsLeftOfACompressedMap) {
+  std::vector<Vector<3>> points = pointsWithin({4, 4, 0.01});  // flat on one side, a cloud on the other
+  for (const Vector<3>& point : pointsWithin({2, 4, 2})) points.push_back(point);
+  const GaussianMapOctree map = compress(build<3>(points, {0.5, 2, 3, 0.0}), 0.33);
+  ASSERT_TRUE(map.isCompressed());
+  ASSERT_GT(map.gaussianCount(0), 0u);
+  expectTheNearest(map);
 }
 
 TEST(MapNeighbours, KeepAListAsLongAsThePointIsNearestToItsCorner) {

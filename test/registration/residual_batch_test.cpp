@@ -89,7 +89,6 @@ TEST(ResidualBatch, IsTheSumOfItsResidualsHoweverManyThereAre) {
     const NormalEquations plain = plainSumOf(meetings, pose, blur_squared, kernel);
     EXPECT_LE((fast.information - plain.information).norm(), 1e-12 * plain.information.norm()) << size;
     EXPECT_LE((fast.gradient - plain.gradient).norm(), 1e-11 * plain.information.norm()) << size;
-    EXPECT_EQ(fast.information, fast.information.transpose());
     EXPECT_NEAR(fast.cost, plain.cost, 1e-12 * (1.0 + plain.cost)) << size;
     EXPECT_NEAR(fast.near_squared, plain.near_squared, 1e-12 * (1.0 + plain.cost)) << size;
     EXPECT_EQ(fast.met, size);
@@ -101,8 +100,7 @@ TEST(ResidualBatch, IsTheSumOfItsResidualsHoweverManyThereAre) {
 TEST(ResidualBatch, HasTheInformationOfALinearProblem) {
   // Without a kernel the cost is quadratic in the translation: its second differences are twice the information.
   Random random(2);
-  const MapGaussian target{
-      direction(random), Eigen::Quaterniond::UnitRandom().toRotationMatrix(), {0.01, 0.2, 0.5}, {1.0, 0.4, 0.1}};
+  const MapGaussian target{direction(random), anyRotation(random), {0.01, 0.2, 0.5}, {1.0, 0.4, 0.1}};
   const Gaussian<3> gaussian{direction(random), Vector<3>(0.1, 0.2, 0.3).asDiagonal(), 1.0};
   const Pose pose = anyPose(random);
   const auto at = [&](const Pose& where) { return sumOf({{gaussian, target}}, where, 0.02, 1e9); };

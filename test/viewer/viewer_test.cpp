@@ -3,8 +3,10 @@
 #include "gaussmap/viewer/viewer.h"
 
 #include <gtest/gtest.h>
+#include <vtkDataArray.h>
 #include <vtkDataSet.h>
 #include <vtkMapper.h>
+#include <vtkPointData.h>
 
 #include <cmath>
 
@@ -143,6 +145,25 @@ TEST(Viewer, RefusesWhatItCannotShow) {
   refuses([](ViewOptions& options) { options.view.zoom = -1.0; });
   refuses([](ViewOptions& options) { options.view.direction.setZero(); });
   refuses([](ViewOptions& options) { options.up.setConstant(std::nan("")); });
+}
+
+TEST(CentreActor, ShowsAnEvenChoiceOfManyCentresEachInItsColour) {
+  std::vector<Glyph> glyphs(120001);
+  std::vector<Colour> colours(glyphs.size());
+  for (std::size_t i = 0; i < glyphs.size(); ++i) {
+    glyphs[i].centre[0] = float(i);
+    colours[i] = {static_cast<unsigned char>(i % 251), 0, 0};
+  }
+  const auto actor = centreActor(glyphs, colours);
+  actor->GetMapper()->Update();
+  vtkDataSet* const data = actor->GetMapper()->GetInput();
+  const vtkIdType count = data->GetNumberOfPoints();
+  ASSERT_EQ(count, 40001);  // each third: 60,000 at most
+  ASSERT_EQ(data->GetPointData()->GetScalars()->GetNumberOfTuples(), count);
+  for (vtkIdType k = 0; k < count; ++k) {
+    ASSERT_EQ(data->GetPoint(k)[0], 3.0 * double(k));
+    ASSERT_EQ(data->GetPointData()->GetScalars()->GetComponent(k, 0), double(3 * k % 251));
+  }
 }
 
 TEST(Viewer, ShowsTheEllipsoidsInOneDetailAtATime) {
