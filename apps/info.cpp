@@ -55,7 +55,6 @@ void addLeaves(const GaussianMap<3>& map, Json& scales) {
   }
 }
 
-/// The error curves that the map was refined by; nothing if there are none.
 bool isCurve(const Json& curve) {
   if (!curve.is_object() || !curve.value("scale", Json()).is_number_integer()) return false;
   const Json points = curve.value("points", Json());
@@ -66,7 +65,7 @@ bool isCurve(const Json& curve) {
          });
 }
 
-/// Empty where there are none, or what is there is something else.
+/// The error curves that the map was refined by; empty if there are none, or what is there is something else.
 Json curvesOf(const MapMetadata& metadata) {
   const auto entry = metadata.find("error_curves");
   const Json curves = entry == metadata.end() ? Json() : Json::parse(entry->second, nullptr, false);

@@ -23,7 +23,7 @@ void addBuildings(TriangleMesh& mesh, double side) {
 /// From the first to the end of the street, `step` [m] apart.
 std::vector<double> placesAlong(double first, double step) {
   std::vector<double> places;
-  while (first + step * double(places.size()) < 130.0) places.push_back(first + step * double(places.size()));
+  for (int k = 0; first + step * k < 130.0; ++k) places.push_back(first + step * k);
   return places;
 }
 
