@@ -7,11 +7,13 @@
 #include <set>
 
 #include "common.h"
-#include "gaussmap/evaluation/removal_score.h"
-#include "gaussmap/io/pcd_records.h"
-#include "gaussmap/mapping/moving_points.h"
+#include "evaluation/removal_score.h"
+#include "gaussmap/mapping/moving/moving_points.h"
+#include "io/pcd/pcd_records.h"
 
 namespace gaussmap::app {
+using namespace detail;
+
 namespace {
 
 struct CleanCommand {

@@ -15,12 +15,13 @@
 #include <system_error>
 #include <thread>
 
-#include "gaussmap/io/pcd_reader.h"
-#include "gaussmap/io/pose_doctor.h"
-#include "gaussmap/io/pose_file.h"
-#include "gaussmap/io/scan_list.h"
+#include "gaussmap/io/pcd/pcd_reader.h"
+#include "gaussmap/io/scans/pose_checks.h"
+#include "gaussmap/io/scans/pose_file.h"
+#include "gaussmap/io/scans/scan_list.h"
 
 namespace gaussmap::app {
+using namespace detail;
 
 void addScanOptions(CLI::App& command, ScanInput& input) {
   command.add_option(

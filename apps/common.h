@@ -11,8 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "gaussmap/io/map_file.h"
+#include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/mapping/accumulate_scans.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap::app {
 

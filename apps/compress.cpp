@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // gaussmap compress MAP -o OUT --max-error E: detail only where it is needed.
-#include "gaussmap/mapping/compress.h"
+#include "gaussmap/editing/compress.h"
 
 #include <cstdio>
 
 #include "common.h"
-#include "gaussmap/io/map_pcd.h"
+#include "gaussmap/io/pcd/map_pcd.h"
 
 namespace gaussmap::app {
+using namespace detail;
+
 namespace {
 
 struct CompressCommand {

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // gaussmap crop MAP -o OUT --box|--polygon: a part of a map.
-#include "gaussmap/mapping/crop.h"
+#include "gaussmap/editing/crop.h"
 
 #include <iostream>
 #include <limits>
 
 #include "common.h"
-#include "gaussmap/io/map_pcd.h"
+#include "gaussmap/io/pcd/map_pcd.h"
 
 namespace gaussmap::app {
+using namespace detail;
+
 namespace {
 
 struct CropCommand {

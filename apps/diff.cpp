@@ -4,11 +4,13 @@
 #include <cstdio>
 
 #include "common.h"
-#include "gaussmap/io/map_pcd.h"
-#include "gaussmap/io/pcd_writer.h"
-#include "gaussmap/mapping/diff_maps.h"
+#include "gaussmap/editing/diff_maps.h"
+#include "gaussmap/io/pcd/map_pcd.h"
+#include "gaussmap/io/pcd/pcd_writer.h"
 
 namespace gaussmap::app {
+using namespace detail;
+
 namespace {
 
 struct DiffCommand {

@@ -4,11 +4,13 @@
 #include <limits>
 
 #include "common.h"
-#include "gaussmap/io/map_pcd.h"
+#include "gaussmap/io/pcd/map_pcd.h"
 #include "map_picture.h"
 #include "svg.h"
 
 namespace gaussmap::app {
+using namespace detail;
+
 namespace {
 
 constexpr std::size_t kMostEllipses = 200000;  // 30 MB of text, more than viewers like

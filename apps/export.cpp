@@ -4,11 +4,13 @@
 #include <map>
 
 #include "common.h"
-#include "gaussmap/io/gaussian_ply.h"
-#include "gaussmap/io/gaussian_table.h"
-#include "gaussmap/io/map_pcd.h"
+#include "gaussmap/io/export/gaussian_ply.h"
+#include "gaussmap/io/export/gaussian_table.h"
+#include "gaussmap/io/pcd/map_pcd.h"
 
 namespace gaussmap::app {
+using namespace detail;
+
 namespace {
 
 struct ExportCommand {

@@ -3,9 +3,11 @@
 #include <cstdio>
 
 #include "common.h"
-#include "gaussmap/io/map_pcd.h"
+#include "gaussmap/io/pcd/map_pcd.h"
 
 namespace gaussmap::app {
+using namespace detail;
+
 namespace {
 
 struct FinishCommand {

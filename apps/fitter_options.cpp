@@ -4,6 +4,8 @@
 #include <map>
 
 namespace gaussmap::app {
+using namespace detail;
+
 namespace {
 
 const std::string kGroup = "Fitting";

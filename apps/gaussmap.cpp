@@ -6,9 +6,11 @@
 #include <new>
 
 #include "common.h"
-#include "gaussmap/io/signals.h"
+#include "io/files/signals.h"
 
 namespace gaussmap::app {
+using namespace detail;
+
 namespace {
 
 /// What CLI11 says, in words that a newcomer understands, and where to read on.
@@ -42,7 +44,7 @@ int complain(std::string text, int code) {
 
 int main(int argc, char** argv) {
   using namespace gaussmap::app;
-  gaussmap::handleSignals("gaussmap");
+  gaussmap::detail::handleSignals("gaussmap");
   CLI::App app("Compact multi-scale Gaussian maps from range scans", "gaussmap");
   app.set_version_flag("--version", "gaussmap " GAUSSMAP_VERSION);
   app.require_subcommand(1);

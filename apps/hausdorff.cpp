@@ -8,13 +8,15 @@
 #include <iostream>
 
 #include "common.h"
-#include "gaussmap/evaluation/error_cloud.h"
+#include "evaluation/error_cloud.h"
 #include "gaussmap/evaluation/held_out.h"
-#include "gaussmap/io/map_pcd.h"
-#include "gaussmap/io/ply.h"
+#include "gaussmap/io/pcd/map_pcd.h"
+#include "gaussmap/io/ply/ply.h"
 #include "gaussmap/map/leaves.h"
 
 namespace gaussmap::app {
+using namespace detail;
+
 namespace {
 
 struct HausdorffCommand {

@@ -5,12 +5,14 @@
 #include <iostream>
 
 #include "common.h"
-#include "gaussmap/io/map_pcd.h"
+#include "gaussmap/io/pcd/map_pcd.h"
 #include "gaussmap/map/extent.h"
 #include "gaussmap/map/leaves.h"
 #include "plot.h"
 
 namespace gaussmap::app {
+using namespace detail;
+
 namespace {
 
 struct InfoOptions {

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 
-#include "gaussmap/io/carmen_log.h"
-#include "gaussmap/io/planar_scan.h"
+#include "gaussmap/io/logs/carmen_log.h"
+#include "gaussmap/segments/planar_scan.h"
 
 namespace gaussmap::app {
+using namespace detail;
+
 namespace {
 
 constexpr std::size_t kMostWarnings = 5;  // about one log

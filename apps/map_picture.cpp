@@ -9,6 +9,8 @@
 #include "svg.h"
 
 namespace gaussmap::app {
+using namespace detail;
+
 namespace {
 
 // All in pixels.
@@ -20,16 +22,17 @@ constexpr double kThin = 2.0;  // poles and fronts are filled, so that they are 
 
 /// Viridis (van der Walt & Smith 2015) in nine steps: equal differences look equal. Reversed: on white paper the
 /// ground is pale, what stands on it dark.
-constexpr int kColours[][3] = {{253, 231, 37}, {173, 220, 48}, {94, 201, 98}, {40, 174, 128}, {33, 145, 140},
-                               {44, 114, 142}, {59, 82, 139},  {71, 45, 123}, {68, 1, 84}};
+constexpr int kScaleColours[][3] = {{253, 231, 37}, {173, 220, 48}, {94, 201, 98}, {40, 174, 128}, {33, 145, 140},
+                                    {44, 114, 142}, {59, 82, 139},  {71, 45, 123}, {68, 1, 84}};
 
 /// "#rrggbb" of a place between 0 (low) and 1 (high).
 std::string colourOf(double place) {
-  const double step = std::clamp(place, 0.0, 1.0) * (std::size(kColours) - 1);
-  const auto below = std::min(static_cast<std::size_t>(step), std::size(kColours) - 2);
+  const double step = std::clamp(place, 0.0, 1.0) * (std::size(kScaleColours) - 1);
+  const auto below = std::min(static_cast<std::size_t>(step), std::size(kScaleColours) - 2);
   const double part = step - static_cast<double>(below);
   long rgb[3];
-  for (int i = 0; i < 3; ++i) rgb[i] = std::lround((1.0 - part) * kColours[below][i] + part * kColours[below + 1][i]);
+  for (int i = 0; i < 3; ++i)
+    rgb[i] = std::lround((1.0 - part) * kScaleColours[below][i] + part * kScaleColours[below + 1][i]);
   char text[32];
   std::snprintf(text, sizeof text, "#%02lx%02lx%02lx", rgb[0], rgb[1], rgb[2]);
   return text;
@@ -129,8 +132,8 @@ void drawScaleBar(Svg& svg, const Layout& layout, double y) {
 void drawColourBar(Svg& svg, const HeightRange& heights, double right, double y) {
   const double left = right - kColourBar;
   svg << "<linearGradient id='heights'>";
-  for (std::size_t i = 0; i < std::size(kColours); ++i) {
-    const double place = static_cast<double>(i) / (std::size(kColours) - 1);
+  for (std::size_t i = 0; i < std::size(kScaleColours); ++i) {
+    const double place = static_cast<double>(i) / (std::size(kScaleColours) - 1);
     svg << "<stop offset='" << place << "' stop-color='" << colourOf(place) << "'/>";
   }
   svg << "</linearGradient>\n<rect x='" << left << "' y='" << y << "' width='" << kColourBar

@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // gaussmap merge A B... -o OUT: several maps into one.
-#include "gaussmap/mapping/merge_maps.h"
+#include "gaussmap/editing/merge_maps.h"
 
 #include <cmath>
 #include <iostream>
 
 #include "common.h"
-#include "gaussmap/io/error.h"
-#include "gaussmap/io/map_pcd.h"
+#include "gaussmap/core/error.h"
+#include "gaussmap/io/pcd/map_pcd.h"
 #include "motion.h"
 
 namespace gaussmap::app {
+using namespace detail;
+
 namespace {
 
 struct MergeCommand {

@@ -5,9 +5,11 @@
 #include <optional>
 #include <sstream>
 
-#include "gaussmap/io/pose_file.h"
+#include "gaussmap/io/scans/pose_file.h"
 
 namespace gaussmap::app {
+using namespace detail;
+
 namespace {
 
 double numberIn(const std::string& option, const std::string& word) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common.h"
-#include "gaussmap/mapping/transform_map.h"
+#include "gaussmap/editing/transform_map.h"
 
 namespace gaussmap::app {
 

@@ -6,10 +6,12 @@
 #include <set>
 #include <sstream>
 
-#include "gaussmap/io/atomic_file.h"
-#include "gaussmap/io/removed_pcd.h"
+#include "io/files/atomic_file.h"
+#include "io/pcd/removed_pcd.h"
 
 namespace gaussmap::app {
+using namespace detail;
+
 namespace {
 
 const std::map<std::string, LearningRate> kRates = {{"sample-mean", LearningRate::SampleMean},

@@ -6,7 +6,7 @@
 
 #include "budget.h"
 #include "common.h"
-#include "gaussmap/online/online_mapper.h"
+#include "gaussmap/mapping/online/online_mapper.h"
 
 namespace gaussmap::app {
 

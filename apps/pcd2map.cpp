@@ -5,14 +5,16 @@
 
 #include "budget.h"
 #include "common.h"
-#include "gaussmap/io/build_map_file.h"
-#include "gaussmap/io/scan_list.h"
+#include "gaussmap/io/gmap/build_map_file.h"
+#include "gaussmap/io/scans/scan_list.h"
 #include "gaussmap/mapping/build.h"
 #include "online.h"
 #include "scan_report.h"
 #include "update.h"
 
 namespace gaussmap::app {
+using namespace detail;
+
 namespace {
 
 struct Pcd2mapOptions {
@@ -142,7 +144,7 @@ void pcd2map(const Pcd2mapOptions& options) {
   if (options.json) {
     printJson({{"map", options.output.path},
                {"scans", scans.size()},
-               {"points", jsonOf(written.counts)},
+               {"points", countsJson(written.counts)},
                {"scales", written.scales},
                {"bytes", bytes},
                {"seconds", seconds}});

@@ -8,10 +8,12 @@
 #include "svg.h"
 
 namespace gaussmap::app {
+using namespace detail;
+
 namespace {
 
 constexpr double kWidth = 640, kHeight = 420, kLeft = 70, kRight = 190, kTop = 20, kBottom = 50;
-constexpr const char* kColours[] = {"#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e"};
+constexpr const char* kCurveColours[] = {"#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e"};
 
 /// A logarithmic axis from whole powers of ten.
 struct Axis {
@@ -64,7 +66,7 @@ void plotCurves(const Json& curves, const std::filesystem::path& path) {
   double legend = kTop + 10;
   std::size_t number = 0;
   for (const Json& curve : curves) {
-    const char* colour = kColours[number++ % std::size(kColours)];
+    const char* colour = kCurveColours[number++ % std::size(kCurveColours)];
     for (const char* const key : {"q95", "mean"}) {
       const bool dashed = std::string(key) == "mean";
       svg << "<polyline fill='none' stroke-width='2' stroke='" << colour << (dashed ? "' stroke-dasharray='5 4" : "")

@@ -4,14 +4,16 @@
 #include <cstdio>
 
 #include "common.h"
-#include "gaussmap/io/map_pcd.h"
-#include "gaussmap/io/pcd_reader.h"
-#include "gaussmap/io/scan_list.h"
+#include "gaussmap/io/pcd/map_pcd.h"
+#include "gaussmap/io/pcd/pcd_reader.h"
+#include "gaussmap/io/scans/scan_list.h"
 #include "gaussmap/mapping/scan.h"
 #include "gaussmap/registration/registration.h"
-#include "gaussmap/simulation/trajectory.h"
+#include "simulation/trajectory.h"
 
 namespace gaussmap::app {
+using namespace detail;
+
 namespace {
 
 struct RegisterCommand {

@@ -6,13 +6,15 @@
 #include <vector>
 
 #include "common.h"
-#include "gaussmap/io/map_pcd.h"
-#include "gaussmap/io/removed_pcd.h"
-#include "gaussmap/map/occupancy.h"
+#include "gaussmap/io/pcd/map_pcd.h"
 #include "gaussmap/mapping/build.h"
 #include "gaussmap/mapping/refine.h"
+#include "io/pcd/removed_pcd.h"
+#include "map/inherit_occupancy.h"
 
 namespace gaussmap::app {
+using namespace detail;
+
 namespace {
 
 constexpr std::int64_t kMostPoints = (std::int64_t{1} << 33) - 1;  // of a cell, see CellMoments

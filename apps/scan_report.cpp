@@ -4,6 +4,7 @@
 #include <sstream>
 
 namespace gaussmap::app {
+using namespace detail;
 
 void requirePoints(const PointCounts& counts, const std::vector<ScanSource>& scans) {
   if (counts.accepted > 0) return;
@@ -12,7 +13,7 @@ void requirePoints(const PointCounts& counts, const std::vector<ScanSource>& sca
                            " at range 0, " + std::to_string(counts.beyond_range) + " beyond --max-range");
 }
 
-Json jsonOf(const PointCounts& counts) {
+Json countsJson(const PointCounts& counts) {
   return {{"read", counts.read},
           {"accepted", counts.accepted},
           {"non_finite", counts.non_finite},
@@ -21,7 +22,8 @@ Json jsonOf(const PointCounts& counts) {
 }
 
 Json historyOf(const std::vector<ScanSource>& scans, const PointCounts& counts) {
-  return {{"command", "pcd2map"}, {"version", GAUSSMAP_VERSION}, {"scans", scans.size()}, {"points", jsonOf(counts)}};
+  return {
+      {"command", "pcd2map"}, {"version", GAUSSMAP_VERSION}, {"scans", scans.size()}, {"points", countsJson(counts)}};
 }
 
 std::string summaryOf(const std::vector<ScanSource>& scans, const PointCounts& counts) {

@@ -12,7 +12,7 @@ namespace gaussmap::app {
 /// Throws unless some point was usable, and says what became of them.
 void requirePoints(const PointCounts& counts, const std::vector<ScanSource>& scans);
 
-Json jsonOf(const PointCounts& counts);
+Json countsJson(const PointCounts& counts);
 
 /// The step of the history that scans make.
 Json historyOf(const std::vector<ScanSource>& scans, const PointCounts& counts);

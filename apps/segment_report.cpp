@@ -6,6 +6,7 @@
 #include <iostream>
 
 namespace gaussmap::app {
+using namespace detail;
 
 std::string rounded(const char* pattern, double value) {
   char text[64];
@@ -24,25 +25,25 @@ std::string centimetres(double metres) {
 
 }  // namespace
 
-void print(const HoldOutScore& score, std::size_t scans) {
+void printScore(const HoldOutScore& score, std::size_t scans) {
   std::cout << "held out: " << scans << " scans, " << score.beams << " beams; ends within 5 cm "
             << percent(score.within_5cm) << ", within 10 cm " << percent(score.within_10cm) << ", rms "
             << centimetres(score.rms) << "; rays predicted within 10 cm " << percent(score.predicted_10cm)
             << ", blocked more than 20 cm early " << percent(score.blocked_early) << '\n';
 }
-Json jsonOf(const HoldOutScore& score, std::size_t scans) {
+Json scoreJson(const HoldOutScore& score, std::size_t scans) {
   return {{"scans", scans},   {"beams", score.beams},        {"cov5", score.within_5cm},   {"cov10", score.within_10cm},
           {"rms", score.rms}, {"r10", score.predicted_10cm}, {"viol", score.blocked_early}};
 }
 
-void print(const WallScore& score) {
+void printScore(const WallScore& score) {
   std::cout << "walls: recall " << percent(score.recall) << ", precision " << percent(score.precision)
             << " within 5 cm; offset " << centimetres(score.offset_rms) << ", angle "
             << rounded("%.2f degrees", score.angle_rms * 180.0 / std::acos(-1.0)) << " (rms of " << score.matched
             << " segments), normalised error " << rounded("%.2f", score.normalised_error) << "; corners "
             << centimetres(score.corner_median) << " (median of " << score.corners << ")\n";
 }
-Json jsonOf(const WallScore& score) {
+Json scoreJson(const WallScore& score) {
   return {{"recall", score.recall},       {"precision", score.precision},
           {"matched", score.matched},     {"offset_rms", score.offset_rms},
           {"angle_rms", score.angle_rms}, {"normalised_error", score.normalised_error},

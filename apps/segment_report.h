@@ -4,8 +4,8 @@
 #include <string>
 
 #include "common.h"
-#include "gaussmap/evaluation/segment_score.h"
-#include "gaussmap/evaluation/wall_score.h"
+#include "evaluation/segment_score.h"
+#include "evaluation/wall_score.h"
 
 namespace gaussmap::app {
 
@@ -13,9 +13,9 @@ namespace gaussmap::app {
 std::string rounded(const char* pattern, double value);
 
 // One line on stdout each, or the same for machines. `scans`: that were scored.
-void print(const HoldOutScore& score, std::size_t scans);
-Json jsonOf(const HoldOutScore& score, std::size_t scans);
-void print(const WallScore& score);
-Json jsonOf(const WallScore& score);
+void printScore(const detail::HoldOutScore& score, std::size_t scans);
+Json scoreJson(const detail::HoldOutScore& score, std::size_t scans);
+void printScore(const detail::WallScore& score);
+Json scoreJson(const detail::WallScore& score);
 
 }  // namespace gaussmap::app

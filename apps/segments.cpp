@@ -7,15 +7,17 @@
 #include <sstream>
 
 #include "fitter_options.h"
-#include "gaussmap/io/atomic_file.h"
-#include "gaussmap/io/carmen_log.h"
-#include "gaussmap/io/pcd_reader.h"
-#include "gaussmap/io/segment_files.h"
+#include "gaussmap/io/export/segment_files.h"
+#include "gaussmap/io/logs/carmen_log.h"
+#include "gaussmap/io/pcd/pcd_reader.h"
+#include "io/files/atomic_file.h"
 #include "laser_input.h"
 #include "segment_picture.h"
 #include "segment_report.h"
 
 namespace gaussmap::app {
+using namespace detail;
+
 namespace {
 
 struct SegmentsCommand {
@@ -217,13 +219,13 @@ void run(const CLI::App& app, const SegmentsCommand& command) {
   }
   if (command.json) {
     Json json = mapJson(command, result);
-    if (held_out) json["held_out"] = jsonOf(*held_out, test.scans.size());
-    if (walls) json["walls"] = jsonOf(*walls);
+    if (held_out) json["held_out"] = scoreJson(*held_out, test.scans.size());
+    if (walls) json["walls"] = scoreJson(*walls);
     return printJson(json);
   }
   printMap(command, result);
-  if (held_out) print(*held_out, test.scans.size());
-  if (walls) print(*walls);
+  if (held_out) printScore(*held_out, test.scans.size());
+  if (walls) printScore(*walls);
 }
 
 }  // namespace

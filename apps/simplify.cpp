@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // gaussmap simplify MAP -o OUT: fewer Gaussians, from those that there are.
-#include "gaussmap/mapping/simplify.h"
+#include "gaussmap/editing/simplify.h"
 
 #include <iostream>
 
 #include "budget.h"
 #include "common.h"
-#include "gaussmap/io/map_pcd.h"
+#include "gaussmap/io/pcd/map_pcd.h"
 
 namespace gaussmap::app {
+using namespace detail;
+
 namespace {
 
 struct SimplifyCommand {

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // gaussmap simulate [SCENE] -o DIR: scans of a built-in world whose surfaces are known exactly.
-#include "gaussmap/simulation/simulation.h"
+#include "simulation/simulation.h"
 
 #include <algorithm>
 #include <iostream>
 #include <map>
 
 #include "common.h"
-#include "gaussmap/io/pcd_writer.h"
-#include "gaussmap/io/ply.h"
-#include "gaussmap/io/scan_list.h"
-#include "gaussmap/io/segment_files.h"
+#include "gaussmap/io/export/segment_files.h"
+#include "gaussmap/io/pcd/pcd_writer.h"
+#include "gaussmap/io/ply/ply.h"
+#include "gaussmap/io/scans/scan_list.h"
 
 namespace gaussmap::app {
+using namespace detail;
+
 namespace {
 
 const std::map<std::string, WorldName> kWorlds = {{"corner", WorldName::Corner},

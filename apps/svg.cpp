@@ -4,9 +4,11 @@
 #include <cmath>
 
 #include "common.h"
-#include "gaussmap/io/atomic_file.h"
+#include "io/files/atomic_file.h"
 
 namespace gaussmap::app {
+using namespace detail;
+
 namespace {
 
 /// File names need not be UTF-8, as XML must be.

@@ -3,10 +3,12 @@
 #include <cstdio>
 
 #include "common.h"
-#include "gaussmap/io/map_pcd.h"
-#include "gaussmap/io/map_tiles.h"
+#include "gaussmap/io/export/map_tiles.h"
+#include "gaussmap/io/pcd/map_pcd.h"
 
 namespace gaussmap::app {
+using namespace detail;
+
 namespace {
 
 struct TilesCommand {

@@ -3,10 +3,12 @@
 #include <iostream>
 
 #include "common.h"
-#include "gaussmap/io/map_pcd.h"
+#include "gaussmap/io/pcd/map_pcd.h"
 #include "motion.h"
 
 namespace gaussmap::app {
+using namespace detail;
+
 namespace {
 
 struct TransformCommand {

@@ -5,11 +5,13 @@
 #include <cmath>
 #include <iostream>
 
-#include "gaussmap/io/map_update.h"
+#include "gaussmap/io/gmap/map_update.h"
 #include "gaussmap/mapping/accumulate_scans.h"
 #include "scan_report.h"
 
 namespace gaussmap::app {
+using namespace detail;
+
 namespace {
 
 /// What the last step that refined the map was asked for.
@@ -72,7 +74,7 @@ void updateFromScans(const UpdateInput& input, const ScanInput& scan_input, cons
       scales.push_back({{"scale", s}, {"cells", update.cells[s]}, {"gaussians", update.gaussians[s]}});
     printJson({{"map", input.map},
                {"scans", scans.size()},
-               {"points", jsonOf(accumulated.counts)},
+               {"points", countsJson(accumulated.counts)},
                {"scales", scales},
                {"tiles", update.tiles},
                {"tiles_written", update.tiles_written},

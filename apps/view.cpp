@@ -5,6 +5,8 @@
 #include "common.h"
 
 namespace gaussmap::app {
+using namespace detail;
+
 namespace {
 
 /// Does not return unless it throws.

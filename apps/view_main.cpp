@@ -5,13 +5,15 @@
 #include <map>
 
 #include "common.h"
-#include "gaussmap/io/map_pcd.h"
-#include "gaussmap/io/pcd_reader.h"
-#include "gaussmap/io/segment_files.h"
-#include "gaussmap/io/signals.h"
-#include "gaussmap/viewer/viewer.h"
+#include "gaussmap/io/export/segment_files.h"
+#include "gaussmap/io/pcd/map_pcd.h"
+#include "gaussmap/io/pcd/pcd_reader.h"
+#include "io/files/signals.h"
+#include "viewer/viewer.h"
 
 namespace gaussmap::app {
+using namespace detail;
+
 namespace {
 
 struct ViewCommand {
@@ -173,7 +175,7 @@ void addOptions(CLI::App& app, ViewCommand& command) {
 
 int main(int argc, char** argv) {
   using namespace gaussmap::app;
-  gaussmap::handleSignals("gaussmap");
+  gaussmap::detail::handleSignals("gaussmap");
   CLI::App app("Look at a map in a window, or save a picture (--png)", "gaussmap view");
   app.footer("Keys:\n" + gaussmap::Viewer::helpText() +
              "\nExample: gaussmap view street.gmap --scale 1 --color normal --png street.png --size 1600x900");

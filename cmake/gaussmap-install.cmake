@@ -1,25 +1,27 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# cmake --install, and what find_package(gaussmap) finds afterwards.
+# cmake --install, and what find_package(gaussmap) finds afterwards: one file of targets per component.
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/gaussmap)
-set(targets gaussmap_core)
-install(DIRECTORY include/gaussmap DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp"
-        PATTERN "pcl" EXCLUDE PATTERN "viewer" EXCLUDE)
+install(DIRECTORY include/gaussmap DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h" PATTERN "pcl" EXCLUDE)
+set(components core io)
 if(GAUSSMAP_BUILD_PCL)
-  list(APPEND targets gaussmap_pcl)
+  list(APPEND components pcl)
   install(DIRECTORY include/gaussmap/pcl DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/gaussmap)
 endif()
-install(TARGETS ${targets} EXPORT gaussmap-targets
-        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
-        RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-if(GAUSSMAP_BUILD_APPS AND GAUSSMAP_BUILD_VIEWER)
-  install(TARGETS gaussmap_view RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})  # `gaussmap view` looks for it beside itself
-endif()
+foreach(component ${components})
+  install(TARGETS gaussmap_${component} EXPORT gaussmap-${component}-targets
+          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+          RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(EXPORT gaussmap-${component}-targets NAMESPACE gaussmap:: DESTINATION ${package_dir})
+endforeach()
 if(GAUSSMAP_BUILD_APPS)
   install(TARGETS gaussmap_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  if(GAUSSMAP_BUILD_VIEWER)
+    install(TARGETS gaussmap_view RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})  # `gaussmap view` looks for it beside itself
+  endif()
 endif()
-install(EXPORT gaussmap-targets NAMESPACE gaussmap:: DESTINATION ${package_dir})
+install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 configure_package_config_file(cmake/gaussmap-config.cmake.in ${PROJECT_BINARY_DIR}/gaussmap-config.cmake
                               INSTALL_DESTINATION ${package_dir})

@@ -11,6 +11,8 @@
 #include "merge_table.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();

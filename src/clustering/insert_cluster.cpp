@@ -4,6 +4,7 @@
 #include "swap_loop.h"
 
 namespace gaussmap {
+using namespace detail;
 
 template <int D>
 KLClustering<D> insertCluster(const std::vector<Gaussian<D>>& data, const std::vector<Gaussian<D>>& current_references,

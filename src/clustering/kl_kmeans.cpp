@@ -9,6 +9,8 @@
 #include "swap_loop.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 /// Up to k references to start from: means drawn among the data as in k-means++ (Arthur & Vassilvitskii 2007), by

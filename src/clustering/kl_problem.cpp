@@ -9,7 +9,7 @@
 
 #include "small_cholesky.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 namespace {
 
 // Rows of the product at a time: their features stay in the first-level cache, whatever n and k are.
@@ -313,4 +313,4 @@ KLClustering<D> KLProblem<D>::finish(const KLPartition<D>& partition) const {
 template class KLProblem<2>;
 template class KLProblem<3>;
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

@@ -7,7 +7,7 @@
 
 #include "gaussmap/clustering/kl_kmeans.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 
 /// Throws std::invalid_argument, naming the option.
 void checkOptions(const KLKMeansOptions& options);
@@ -90,4 +90,4 @@ class KLProblem {
   double weighted_log_determinants_ = 0.0;
 };
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

@@ -7,7 +7,7 @@
 #include <queue>
 #include <tuple>
 
-namespace gaussmap {
+namespace gaussmap::detail {
 namespace {
 
 /// The means of a table as nanoflann wants them.
@@ -127,4 +127,4 @@ void mergeNeighbours(MergeHistory<D>& history, std::size_t neighbours, std::size
 template void mergeNeighbours<2>(MergeHistory<2>&, std::size_t, std::size_t);
 template void mergeNeighbours<3>(MergeHistory<3>&, std::size_t, std::size_t);
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

@@ -7,7 +7,7 @@
 
 #include "merge_table.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 
 /// Clusters on their way to one, with the merges made so far. Slots stay ordered by the smallest datum of their
 /// clusters: of two that merge, the first slot stays.
@@ -51,4 +51,4 @@ struct MergeHistory {
 template <int D>
 void mergeNeighbours(MergeHistory<D>& history, std::size_t neighbours, std::size_t until);
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

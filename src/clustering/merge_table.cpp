@@ -10,10 +10,10 @@
 #include <string>
 #include <utility>
 
-#include "common/clones.h"
+#include "core/function_clones.h"
 #include "small_cholesky.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 namespace {
 
 // A loop over pairs becomes a vector loop only if the loops inside it are gone by then.
@@ -253,4 +253,4 @@ GAUSSMAP_CLONES std::size_t firstMinimum(const double* values, std::size_t size)
 template class MergeTable<2>;
 template class MergeTable<3>;
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

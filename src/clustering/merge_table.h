@@ -8,7 +8,7 @@
 
 #include "gaussmap/clustering/agglomerate.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 
 /// Where the columns of a MergeTable are.
 template <int D>
@@ -54,4 +54,4 @@ class MergeTable {
 /// Index of the smallest of `size` > 0 values, the first of several. No NaN.
 std::size_t firstMinimum(const double* values, std::size_t size);
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

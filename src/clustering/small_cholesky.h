@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "gaussmap/gaussian/gaussian.h"
+#include "gaussmap/core/gaussian.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 
 /// Cholesky factorisation of one small covariance, unrolled by the compiler: k-means factorises a matrix per datum
 /// and reference, and Eigen's solvers spend most of such a call on deciding how to do it.
@@ -45,4 +45,4 @@ struct SmallCholesky {
   Matrix<D> inverse() const { return whitening.transpose().lazyProduct(whitening); }
 };
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-namespace gaussmap {
+namespace gaussmap::detail {
 namespace {
 
 // A swap must pay by more than the rounding of the distortion.
@@ -108,4 +108,4 @@ GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)
 #undef GAUSSMAP_INSTANTIATE
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

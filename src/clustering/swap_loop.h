@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "gaussmap/gaussian/random.h"
+#include "gaussmap/core/random.h"
 #include "kl_problem.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 
 /// One more reference, seeded at the datum of largest distortion, then k-means: lines 5 and 6 of Algorithm 2.
 /// Distortion never rises; the number of clusters may stay.
@@ -16,4 +16,4 @@ KLPartition<D> insertSeed(const KLProblem<D>& problem, const KLPartition<D>& par
 template <int D>
 int swapLoop(const KLProblem<D>& problem, const KLKMeansOptions& options, Random& random, KLPartition<D>& partition);
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

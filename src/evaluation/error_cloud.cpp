@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/evaluation/error_cloud.h"
+#include "evaluation/error_cloud.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,13 +7,13 @@
 #include <string>
 
 #include "gaussmap/evaluation/hausdorff.h"
-#include "gaussmap/io/pcd_writer.h"
+#include "gaussmap/io/pcd/pcd_writer.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 namespace {
 
-constexpr double kNear = 16384.0;       // [m]; nearer to the origin, a float resolves 1 mm
-constexpr double kOriginStep = 1024.0;  // [m]
+constexpr double kExactFloats = 16384.0;  // [m]; nearer to the origin, a float resolves 1 mm
+constexpr double kOriginStep = 1024.0;    // [m]
 
 /// Where the coordinates start from: zero for a cloud near the origin.
 Pose originOf(const std::vector<Vector<3>>& points) {
@@ -23,7 +23,7 @@ Pose originOf(const std::vector<Vector<3>>& points) {
     low = low.cwiseMin(point);
     high = high.cwiseMax(point);
   }
-  if (low.cwiseAbs().maxCoeff() > kNear || high.cwiseAbs().maxCoeff() > kNear)
+  if (low.cwiseAbs().maxCoeff() > kExactFloats || high.cwiseAbs().maxCoeff() > kExactFloats)
     origin.translation = kOriginStep * (0.5 / kOriginStep * (low + high)).array().round().matrix();
   return origin;
 }
@@ -70,4 +70,4 @@ void writeErrorCloud(const std::filesystem::path& path, const std::vector<Vector
       origin);
 }
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

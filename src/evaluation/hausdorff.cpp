@@ -6,23 +6,14 @@
 #include <optional>
 #include <stdexcept>
 
-#include "common/parallel.h"
-#include "evaluation/nearest_search.h"
-#include "gaussmap/evaluation/mesh_distance.h"
+#include "core/parallel.h"
+#include "core/quantile.h"
 #include "gaussmap/map/leaves.h"
+#include "mesh/mesh_distance.h"
+#include "points/nearest_search.h"
 
 namespace gaussmap {
-namespace {
-
-/// Nearest rank, in integers: 0.95 * n would round up to the next rank for some n.
-double percentile(std::vector<double>& values, std::size_t percent) {
-  const std::size_t rank = values.size() / 100 * percent + (values.size() % 100 * percent + 99) / 100;
-  const auto place = values.begin() + static_cast<std::ptrdiff_t>(rank - 1);
-  std::nth_element(values.begin(), place, values.end());
-  return *place;
-}
-
-}  // namespace
+using namespace detail;
 
 DistanceSummary summarise(std::vector<double> distances) {
   if (distances.empty()) throw std::invalid_argument("no distances to summarise");

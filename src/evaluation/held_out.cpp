@@ -9,9 +9,12 @@
 #include <string>
 #include <tuple>
 
-#include "common/parallel.h"
+#include "core/parallel.h"
+#include "core/quantile.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 constexpr double kLogTwoPi = 1.8378770664093454836;
@@ -239,9 +242,7 @@ HeldOutResult summarise(Scores scores, double volume, const HeldOutOptions& opti
   }
   result.mean = sum / static_cast<double>(result.count);
   result.mean_inside = sum_inside / static_cast<double>(result.count - result.nowhere);  // NaN: 0 / 0
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  result.median = *middle;
+  result.median = percentile(values, 50);
   return result;
 }
 

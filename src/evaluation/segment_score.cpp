@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/evaluation/segment_score.h"
+#include "evaluation/segment_score.h"
 
 #include <stdexcept>
 #include <string>
 
 #include "evaluation/segment_tree.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 namespace {
 
 constexpr double kNear = 0.05, kClose = 0.10, kFar = 0.20;  // [m]
@@ -50,4 +50,4 @@ HoldOutScore scoreHoldOut(const SegmentMap& map, const std::vector<LaserScan>& s
   return score;
 }
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
-#include "gaussmap/evaluation/mesh_tree.h"
 #include "gaussmap/segments/segment.h"
+#include "mesh/mesh_tree.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 
 /// Finds line segments near a point or in a ray's way: they stand as upright walls in a MeshTree, which is asked at
 /// half their height.
@@ -55,4 +55,4 @@ class SegmentTree {
   MeshTree tree_;
 };
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/evaluation/wall_score.h"
+#include "evaluation/wall_score.h"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -8,10 +8,11 @@
 #include <stdexcept>
 #include <string>
 
-#include "common/pi.h"
+#include "core/pi.h"
+#include "core/quantile.h"
 #include "evaluation/segment_tree.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 namespace {
 
 constexpr double kSameWay = 20.0 * kPi / 180.0;
@@ -91,9 +92,7 @@ void scoreCorners(const SegmentMap& map, const std::vector<Segment>& walls, cons
   }
   score.corners = distances.size();
   if (distances.empty()) return;
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  score.corner_median = *middle;
+  score.corner_median = nthSmallest(distances, distances.size() / 2);
 }
 
 }  // namespace
@@ -111,4 +110,4 @@ WallScore scoreWalls(const SegmentMap& map, const std::vector<Segment>& walls, c
   return score;
 }
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

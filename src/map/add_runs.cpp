@@ -8,7 +8,7 @@
 #include <immintrin.h>
 #endif
 
-namespace gaussmap {
+namespace gaussmap::detail {
 
 #ifdef GAUSSMAP_HAS_AVX2_PATH
 namespace {
@@ -55,4 +55,4 @@ void addRuns(const Runs<3>& runs) {
   addRunsPlainly(runs);
 }
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

@@ -4,10 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "gaussmap/gaussian/cell_moments.h"
-#include "gaussmap/map/point_block.h"
+#include "gaussmap/core/cell_moments.h"
+#include "gaussmap/core/point_block.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 
 /// The points of a block, cut into runs of one cell each.
 template <int D>
@@ -34,4 +34,4 @@ void addRunsPlainly(const Runs<D>& runs) {
     }
 }
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

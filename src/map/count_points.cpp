@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/map/count_points.h"
+#include "gaussmap/map/moment_grid.h"
 
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <utility>
 
-#include "common/clones.h"
-#include "common/parallel.h"
+#include "core/function_clones.h"
+#include "core/parallel.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 /// One array an axis. Strides that compilers know of let them load and turn several points at once.

@@ -6,10 +6,12 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "common/floor_divide.h"
+#include "core/floor_divide.h"
 #include "map/lattice.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 // Beyond this a covariance of the coarsest scale would not fit into doubles beside its noise floor

@@ -6,10 +6,12 @@
 #include <numeric>
 #include <utility>
 
-#include "common/floor_divide.h"
+#include "core/floor_divide.h"
 #include "gaussmap/map/gaussian_map.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 /// Codes of up to 103 bits: per axis at most 2^32 coordinates and as many again for the rounding to whole ancestors.

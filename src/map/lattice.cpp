@@ -4,7 +4,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace gaussmap {
+namespace gaussmap::detail {
 
 void throwOutsideLattice(const double* point, int dimension, double resolution) {
   std::ostringstream text;
@@ -16,4 +16,4 @@ void throwOutsideLattice(const double* point, int dimension, double resolution) 
   throw std::out_of_range(text.str());
 }
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

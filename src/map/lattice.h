@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <cstring>
 
-#include "gaussmap/gaussian/cell_moments.h"
+#include "gaussmap/core/cell_moments.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 
 /// Points snap to a lattice with 2^16 steps per finest cell; from there on cells and offsets are integers.
 /// The rounding is one multiplication and one addition, each rounded by itself: the files that include this
@@ -50,4 +50,4 @@ inline std::int64_t snap(double steps) {
 /// Throws std::out_of_range that quotes the point and the way out.
 [[noreturn]] void throwOutsideLattice(const double* point, int dimension, double resolution);
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

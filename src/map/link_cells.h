@@ -8,7 +8,7 @@
 
 #include "gaussmap/map/grid.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 
 /// MapScale::first_child of the cells of scale s: which cells of scale s - 1 lie under each of them, none under some
 /// perhaps. Both in key order. Throws std::invalid_argument, naming it, if a parent is missing.
@@ -27,4 +27,4 @@ std::vector<std::uint32_t> linkCells(const std::vector<CellKey<D>>& finer, const
   return first_child;
 }
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

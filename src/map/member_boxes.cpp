@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/map/member_boxes.h"
+#include "map/member_boxes.h"
 
 #include <cmath>
 #include <limits>
 
 #include "map/boxes_of_parents.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 namespace {
 
 template <int D>
@@ -54,4 +54,4 @@ GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)
 #undef GAUSSMAP_INSTANTIATE
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

@@ -7,13 +7,15 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "common/clones.h"
-#include "common/pages.h"
-#include "common/parallel.h"
+#include "core/function_clones.h"
+#include "core/huge_pages.h"
+#include "core/parallel.h"
 #include "map/add_runs.h"
 #include "map/lattice.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 constexpr std::size_t kBlock = PointBlock<3>::kCapacity;

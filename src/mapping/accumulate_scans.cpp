@@ -9,11 +9,13 @@
 #include <stdexcept>
 #include <utility>
 
-#include "common/parallel.h"
-#include "gaussmap/io/error.h"
-#include "gaussmap/io/pcd_reader.h"
+#include "core/parallel.h"
+#include "gaussmap/core/error.h"
+#include "gaussmap/io/pcd/pcd_reader.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 constexpr std::size_t kBlocksPerTask = 128;  // 65,536 points

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "gaussmap/gaussian/gaussian.h"
+#include "gaussmap/core/gaussian.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 
 /// tau in sides of a finest cell: keeps flat data from having no volume, however far they reach. Coarsest scale at 4
 /// Gaussians a cell, 99 % / 95 % / mean of the distances from samples to the points [m] at tau 0.25 - 0.5 - 1:
@@ -21,4 +21,4 @@ void blurForClustering(std::vector<Gaussian<D>>& data, double side) {
   for (Gaussian<D>& datum : data) datum.cov += tau * tau * Matrix<D>::Identity();
 }
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

@@ -4,9 +4,11 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "gaussmap/mapping/coarsen.h"
+#include "map/coarsen.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 template <int D>

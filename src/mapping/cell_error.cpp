@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/mapping/cell_error.h"
+#include "mapping/cell_error.h"
 
 #include <algorithm>
 #include <limits>
@@ -7,7 +7,7 @@
 
 #include "clustering/small_cholesky.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 
 template <int D>
 double cellError(const std::vector<Gaussian<D>>& references, const std::vector<Gaussian<D>>& data) {
@@ -30,4 +30,4 @@ double cellError(const std::vector<Gaussian<D>>& references, const std::vector<G
 template double cellError<2>(const std::vector<Gaussian<2>>&, const std::vector<Gaussian<2>>&);
 template double cellError<3>(const std::vector<Gaussian<3>>&, const std::vector<Gaussian<3>>&);
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

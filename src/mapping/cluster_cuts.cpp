@@ -6,13 +6,13 @@
 #include <numeric>
 #include <utility>
 
-#include "common/parallel.h"
-#include "gaussmap/map/occupancy.h"
-#include "gaussmap/mapping/coarsen.h"
+#include "clustering/undo_merges.h"
+#include "core/parallel.h"
+#include "map/coarsen.h"
+#include "map/inherit_occupancy.h"
 #include "mapping/blur.h"
-#include "mapping/undo_merges.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 namespace {
 
 /// The parent that most of the weight of some Gaussians belongs to; of several the first.
@@ -154,4 +154,4 @@ GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)
 #undef GAUSSMAP_INSTANTIATE
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

@@ -8,7 +8,7 @@
 #include "gaussmap/clustering/agglomerate.h"
 #include "gaussmap/map/gaussian_map.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 
 /// Which cluster each Gaussian of a scale goes into. Clusters are numbered in the order of the cells.
 struct ClusterCut {
@@ -56,4 +56,4 @@ void mergeClusters(MapScale<D>& scale, MapScale<D>* finer, const Grid<D>& grid, 
 template <int D>
 void matchClusters(MapScale<D>& finer, MapScale<D>& scale, const Grid<D>& grid, int s);
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

@@ -4,17 +4,20 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
-#include "evaluation/sample_within.h"
-#include "gaussmap/evaluation/hausdorff.h"
-#include "gaussmap/evaluation/nearest_distances.h"
-#include "gaussmap/map/member_boxes.h"
+#include "core/quantile.h"
 #include "map/boxes_of_parents.h"
+#include "map/member_boxes.h"
+#include "map/sample_within.h"
 #include "mapping/refine_scale.h"
+#include "points/nearest_distances.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 /// Measures cuts of coarse scales against samples of the finest, one scale after the other from the finest up.
@@ -43,8 +46,11 @@ class CutMeter {
     const GaussianMap<3> map({grid_.side(cuts.scale()), 2, 1, grid_.options().noise}, {alone});
     const SampleOptions options{curve_.samples, 1, SampleShare::Volume, curve_.seed, threads_};
     const std::vector<Vector<3>> samples = sampleWithin<3>(map, 0, alone_boxes, options).points;
-    const DistanceSummary error = summarise(nearestDistances(samples, data_, threads_));
-    return {cut.gaussians.size(), error.q99, error.q95, error.mean};
+    std::vector<double> distances = nearestDistances(samples, data_, threads_);
+    const double sum = std::accumulate(distances.begin(), distances.end(), 0.0);
+    const double mean = sum / static_cast<double>(distances.size());
+    const double q99 = percentile(distances, 99);
+    return {cut.gaussians.size(), q99, percentile(distances, 95), mean};
   }
 
   /// This cut becomes the finer scale of the next one. Returns `extra`.

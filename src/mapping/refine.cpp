@@ -6,11 +6,13 @@
 #include <string>
 #include <utility>
 
-#include "gaussmap/map/occupancy.h"
-#include "mapping/areas.h"
+#include "map/areas.h"
+#include "map/inherit_occupancy.h"
 #include "refine_scale.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 void checkOptions(const RefineOptions& options, int scales) {
@@ -51,8 +53,8 @@ GaussianMap<D> refineScales(const GaussianMap<D>& map, const RefineScale& refine
 }  // namespace
 
 template <int D>
-GaussianMap<D> refineByChoice(GaussianMap<D> map, const RefineOptions& options,
-                              const std::function<std::size_t(const ScaleCuts<D>&)>& choose) {
+GaussianMap<D> detail::refineByChoice(GaussianMap<D> map, const RefineOptions& options,
+                                      const std::function<std::size_t(const ScaleCuts<D>&)>& choose) {
   checkOptions(options, map.scales());
   if (map.empty() || map.scales() == 1) return map;
   return refineScales<D>(map, [&](CoarseScale<D>& scale, const std::vector<double>& areas) {
@@ -77,7 +79,7 @@ GaussianMap<D> refine(GaussianMap<D> map, const RefineOptions& options) {
 
 template GaussianMap<2> refine<2>(GaussianMap<2>, const RefineOptions&);
 template GaussianMap<3> refine<3>(GaussianMap<3>, const RefineOptions&);
-template GaussianMap<3> refineByChoice<3>(GaussianMap<3>, const RefineOptions&,
-                                          const std::function<std::size_t(const ScaleCuts<3>&)>&);
+template GaussianMap<3> detail::refineByChoice<3>(GaussianMap<3>, const RefineOptions&,
+                                                  const std::function<std::size_t(const ScaleCuts<3>&)>&);
 
 }  // namespace gaussmap

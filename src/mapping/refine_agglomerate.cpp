@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <utility>
 
-#include "common/parallel.h"
+#include "clustering/undo_merges.h"
+#include "core/parallel.h"
 #include "gaussmap/clustering/agglomerate.h"
 #include "mapping/blur.h"
 #include "refine_scale.h"
-#include "undo_merges.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 namespace {
 
 /// The greedy parts are as good as they get: moving single data to other parts and exchanging merges for splits of
@@ -86,4 +86,4 @@ ScaleCut<D> ScaleCuts<D>::cut(std::size_t extra) const {
 template class ScaleCuts<2>;
 template class ScaleCuts<3>;
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

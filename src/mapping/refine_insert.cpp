@@ -2,13 +2,13 @@
 #include <queue>
 
 #include "clustering/small_cholesky.h"
-#include "common/parallel.h"
+#include "core/parallel.h"
 #include "gaussmap/clustering/insert_cluster.h"
-#include "gaussmap/gaussian/random.h"
-#include "gaussmap/mapping/cell_error.h"
+#include "gaussmap/core/random.h"
+#include "mapping/cell_error.h"
 #include "refine_scale.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 namespace {
 
 struct QueuedCell {
@@ -134,4 +134,4 @@ void refineByInsertion(CoarseScale<D>& scale, const RefineOptions& options) {
 template void refineByInsertion<2>(CoarseScale<2>&, const RefineOptions&);
 template void refineByInsertion<3>(CoarseScale<3>&, const RefineOptions&);
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "gaussmap/clustering/agglomerate.h"
-#include "gaussmap/mapping/coarsen.h"
 #include "gaussmap/mapping/refine.h"
+#include "map/coarsen.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 
 /// The clusters of a refined cell and which of them each finer Gaussian under it belongs to.
 template <int D>
@@ -150,4 +150,4 @@ template <int D>
 GaussianMap<D> refineByChoice(GaussianMap<D> map, const RefineOptions& options,
                               const std::function<std::size_t(const ScaleCuts<D>&)>& choose);
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

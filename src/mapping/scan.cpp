@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gaussmap/mapping/scan.h"
 
-#include "gaussmap/io/pcd_reader.h"
+#include "gaussmap/io/pcd/pcd_reader.h"
 
 namespace gaussmap {
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "gaussmap/io/map_pcd.h"
+#include "gaussmap/io/pcd/map_pcd.h"
 
 namespace gaussmap {
 

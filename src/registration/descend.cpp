@@ -4,7 +4,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
-namespace gaussmap {
+namespace gaussmap::detail {
 
 Descent descend(const std::function<NormalEquations(const Pose&)>& at, const Pose& start, const DescentLimits& limits) {
   Descent here{start, at(start)};
@@ -30,4 +30,4 @@ Descent descend(const std::function<NormalEquations(const Pose&)>& at, const Pos
   return here;
 }
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

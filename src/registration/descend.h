@@ -3,10 +3,10 @@
 
 #include <functional>
 
-#include "gaussmap/io/pose.h"
+#include "gaussmap/core/pose.h"
 #include "registration/normal_equations.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 
 struct DescentLimits {
   int max_iterations;
@@ -25,4 +25,4 @@ struct Descent {
 /// tried shorter. `at` gives the equations at a pose.
 Descent descend(const std::function<NormalEquations(const Pose&)>& at, const Pose& start, const DescentLimits& limits);
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

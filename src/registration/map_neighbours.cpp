@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace gaussmap {
+namespace gaussmap::detail {
 namespace {
 
 // What the axes other than the thinnest tell at the finest scale: scan lines on a plane look thin along two axes, and
@@ -146,4 +146,4 @@ std::uint32_t MapNeighbours::nearest(std::uint32_t list, const Vector<3>& point)
   return nearest;
 }
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/key_index.h"
+#include "core/key_index.h"
 #include "gaussmap/map/gaussian_map.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 
 /// A Gaussian of the map, as the scan meets it.
 struct MapGaussian {
@@ -83,4 +83,4 @@ class MapNeighbours {
   std::vector<MapGaussian> worked_out_;
 };
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

@@ -3,7 +3,7 @@
 
 #include <Eigen/Geometry>
 
-namespace gaussmap {
+namespace gaussmap::detail {
 
 NormalEquations& NormalEquations::operator+=(const NormalEquations& other) {
   information += other.information;
@@ -25,4 +25,4 @@ Pose moved(const Pose& pose, const NormalEquations::Vector6& by) {
   return normalised(result);
 }
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

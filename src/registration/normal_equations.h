@@ -4,9 +4,9 @@
 #include <Eigen/Core>
 #include <cstddef>
 
-#include "gaussmap/io/pose.h"
+#include "gaussmap/core/pose.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 
 /// Cost at a pose and its derivatives by (x, y, z, rotation vector about the sensor), map axes:
 /// cost = sum_i rho(d_i^2), rho(d^2) = d^2 / (1 + d^2 / k^2).
@@ -27,4 +27,4 @@ struct NormalEquations {
 /// The pose moved by such a six-vector.
 Pose moved(const Pose& pose, const NormalEquations::Vector6& by);
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "gaussmap/mapping/build.h"
-#include "mapping/check_options.h"
+#include "mapping/moving/check_options.h"
 #include "registration/descend.h"
 #include "registration/map_neighbours.h"
 #include "registration/normal_equations.h"
@@ -17,6 +17,8 @@
 #include "registration/scan_on_map.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 using Vector6 = NormalEquations::Vector6;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "registration/residual_batch.h"
 
-#include "common/clones.h"
+#include "core/function_clones.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 namespace {
 
 using Lanes = ResidualBatch::Lanes;
@@ -128,4 +128,4 @@ NormalEquations ResidualBatch::sumUp(const Eigen::Matrix3d& rotation, const Eige
   return sums;
 }
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

@@ -4,11 +4,11 @@
 #include <Eigen/Core>
 #include <cstddef>
 
-#include "gaussmap/gaussian/gaussian.h"
+#include "gaussmap/core/gaussian.h"
 #include "registration/map_neighbours.h"
 #include "registration/normal_equations.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 
 /// Gaussians of a scan beside those of the map that they meet, in columns for vector registers. Each has the residual
 /// d^2 = sum over the axes a of the map's Gaussian, tells_a (a' r)^2 / (variance_a + blur^2 + a' R S R' a), where
@@ -37,4 +37,4 @@ class ResidualBatch {
   std::size_t size_ = 0;
 };
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

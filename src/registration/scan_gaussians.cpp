@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gaussmap {
+namespace gaussmap::detail {
 
 std::vector<Gaussian<3>> gaussiansOf(const GaussianMap<3>& source, double side, std::size_t most) {
   int scale = 0;
@@ -18,4 +18,4 @@ std::vector<Gaussian<3>> gaussiansOf(const GaussianMap<3>& source, double side, 
   return gaussians;
 }
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

@@ -4,13 +4,13 @@
 #include <cstddef>
 #include <vector>
 
-#include "gaussmap/gaussian/gaussian.h"
+#include "gaussmap/core/gaussian.h"
 #include "gaussmap/map/gaussian_map.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 
 /// The Gaussians that are moved onto the map: those of the scale whose cells are nearest to a side [m], at most `most`,
 /// evenly chosen.
 std::vector<Gaussian<3>> gaussiansOf(const GaussianMap<3>& source, double side, std::size_t most);
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
-#include "common/parallel.h"
+#include "core/parallel.h"
 #include "registration/residual_batch.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 namespace {
 
 constexpr std::size_t kPart = 256;  // Gaussians that are summed by themselves: the order of the sums is fixed
@@ -43,4 +43,4 @@ NormalEquations ScanOnMap::linearise(const Pose& pose) {
   return all;
 }
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "gaussmap/gaussian/gaussian.h"
+#include "gaussmap/core/gaussian.h"
 #include "registration/map_neighbours.h"
 #include "registration/normal_equations.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 
 /// The Gaussians of a scan, each beside the nearest one of a map wherever the scan is put. Refers to what it is made
 /// of.
@@ -28,4 +28,4 @@ class ScanOnMap {
   std::vector<std::uint32_t> lists_;  // where the Gaussians were last: most of them stay there
 };
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

@@ -7,8 +7,9 @@
 #include "segments/scan_pieces.h"
 
 namespace gaussmap {
+using namespace detail;
 
-using namespace segments;
+using namespace detail;
 
 namespace {
 
@@ -20,7 +21,7 @@ constexpr int kPruneEvery = 10;     // scans
 
 }  // namespace
 
-SegmentStatistics SegmentFitter::State::add(const LaserScan& original) {
+SegmentStatistics SegmentFitterState::add(const LaserScan& original) {
   if (scans == 0) origin = original.pose.translation.array().round().matrix();
   utility->observe(original.pose.translation);
   const ScanBeams beams(original, origin, observations);
@@ -87,7 +88,7 @@ SegmentStatistics SegmentFitter::State::add(const LaserScan& original) {
   return statistics;
 }
 
-int SegmentFitter::State::associate(const Vector<2>& hit, const Vector<2>& sensor, const Vector<2>& piece) const {
+int SegmentFitterState::associate(const Vector<2>& hit, const Vector<2>& sensor, const Vector<2>& piece) const {
   const double length = piece.norm(), tilt = length < kShort ? kTiltShort : kTilt;
   int best = kNone;
   double least = std::numeric_limits<double>::infinity();
@@ -105,7 +106,7 @@ int SegmentFitter::State::associate(const Vector<2>& hit, const Vector<2>& senso
   return best;
 }
 
-void SegmentFitter::State::take(const ScanBeams& beams, std::size_t beam, LiveSegment& segment) {
+void SegmentFitterState::take(const ScanBeams& beams, std::size_t beam, LiveSegment& segment) {
   model->observe(beams.scan, beam, beams.first_number + beam, points);
   keeper->add(points, segment.evidence);
   const Vector<2>& hit = beams.hits[beam];
@@ -121,7 +122,7 @@ void SegmentFitter::State::take(const ScanBeams& beams, std::size_t beam, LiveSe
       sine * sine * options.noise.range * options.noise.range + (1.0 - sine * sine) * bearing * bearing;
 }
 
-void SegmentFitter::State::describe(const ScanBeams& beams, SegmentStatistics& statistics) const {
+void SegmentFitterState::describe(const ScanBeams& beams, SegmentStatistics& statistics) const {
   double weight = 0.0;
   for (const LiveSegment& segment : segments)
     if (segment.alive) {

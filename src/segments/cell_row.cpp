@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "segments/cell_row.h"
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 
-Cell& CellRow::at(int index) {
+SegmentCell& CellRow::at(int index) {
   if (cells_.empty()) {
     first_ = index;
     cells_.resize(1);
   } else if (index < first_) {
-    cells_.insert(cells_.begin(), static_cast<std::size_t>(std::int64_t{first_} - index), Cell());
+    cells_.insert(cells_.begin(), static_cast<std::size_t>(std::int64_t{first_} - index), SegmentCell());
     first_ = index;
   } else if (index >= last()) {
     cells_.resize(static_cast<std::size_t>(std::int64_t{index} - first_ + 1));
@@ -18,9 +18,9 @@ Cell& CellRow::at(int index) {
 
 void CellRow::absorb(const CellRow& other) {
   for (std::size_t i = 0; i < other.cells_.size(); ++i) {
-    const Cell& cell = other.cells_[i];
+    const SegmentCell& cell = other.cells_[i];
     if (cell.hits.n > 0.0) {
-      Cell& own = at(index(cell.hits.mean()));
+      SegmentCell& own = at(index(cell.hits.mean()));
       own.hits += cell.hits;
       own.crossed += cell.crossed;
     } else if (cell.crossed > 0.0) {
@@ -57,8 +57,8 @@ void CellRow::trim() {
 
 LineMoments CellRow::total() const {
   LineMoments sum;
-  for (const Cell& cell : cells_) sum += cell.hits;
+  for (const SegmentCell& cell : cells_) sum += cell.hits;
   return sum;
 }
 
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

@@ -7,10 +7,10 @@
 
 #include "segments/line_moments.h"
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 
 /// A short stretch along a segment.
-struct Cell {
+struct SegmentCell {
   LineMoments hits;      ///< of the observations that fell to it
   double crossed = 0.0;  ///< rays that went through it
 };
@@ -29,11 +29,11 @@ class CellRow {
   int first() const { return first_; }
   int last() const { return first_ + static_cast<int>(cells_.size()); }  ///< behind the last
   bool empty() const { return cells_.empty(); }
-  const std::vector<Cell>& cells() const { return cells_; }
-  std::vector<Cell>& cells() { return cells_; }
+  const std::vector<SegmentCell>& cells() const { return cells_; }
+  std::vector<SegmentCell>& cells() { return cells_; }
 
   /// The cell with this index, made if there is none.
-  Cell& at(int index);
+  SegmentCell& at(int index);
   void add(const Vector<2>& point, double weight) { at(index(point)).hits.add(point, weight); }
   /// Puts what is in the other row's cells into the cells where their means lie.
   void absorb(const CellRow& other);
@@ -44,13 +44,13 @@ class CellRow {
   /// Drops cells without observations at both ends.
   void trim();
   LineMoments total() const;
-  std::size_t bytes() const { return cells_.capacity() * sizeof(Cell); }
+  std::size_t bytes() const { return cells_.capacity() * sizeof(SegmentCell); }
 
  private:
   Vector<2> origin_{0.0, 0.0}, axis_{1.0, 0.0};
   double size_ = 1.0;
   int first_ = 0;
-  std::vector<Cell> cells_;
+  std::vector<SegmentCell> cells_;
 };
 
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

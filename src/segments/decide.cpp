@@ -7,8 +7,9 @@
 #include "segments/fitter_state.h"
 
 namespace gaussmap {
+using namespace detail;
 
-using namespace segments;
+using namespace detail;
 
 namespace {
 
@@ -35,7 +36,7 @@ std::size_t firstHole(const CellRow& row, double gap) {
 
 }  // namespace
 
-std::vector<int> SegmentFitter::State::mergePartners(int id) const {
+std::vector<int> SegmentFitterState::mergePartners(int id) const {
   const LiveSegment& segment = segments[id];
   std::vector<int> partners;
   // The faces of a thin wall, linked round its end, look away from each other.
@@ -58,7 +59,7 @@ std::vector<int> SegmentFitter::State::mergePartners(int id) const {
   return partners;
 }
 
-void SegmentFitter::State::decide(const std::vector<int>& touched, SegmentStatistics& statistics) {
+void SegmentFitterState::decide(const std::vector<int>& touched, SegmentStatistics& statistics) {
   std::deque<int> open(touched.begin(), touched.end());
   const std::size_t most = kMostDecisions * (touched.size() + 1);
   for (std::size_t decisions = 0; !open.empty() && decisions < most; ++decisions) {

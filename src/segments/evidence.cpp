@@ -7,17 +7,17 @@
 #include <limits>
 #include <utility>
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 namespace {
 
 class MomentCells : public EvidenceKeeper {
  public:
-  void add(const std::vector<ObservationPoint>& observation, Evidence& evidence) const override {
+  void add(const std::vector<ObservationPoint>& observation, SegmentEvidence& evidence) const override {
     LineMoments moments;
     for (const ObservationPoint& point : observation) moments.add(point.position, point.weight);
     evidence.row.at(evidence.row.index(moments.mean())).hits += moments;
   }
-  void settle(double, std::uint64_t, Evidence&) const override {}
+  void settle(double, std::uint64_t, SegmentEvidence&) const override {}
 };
 
 class ParticleSets : public EvidenceKeeper {
@@ -25,18 +25,18 @@ class ParticleSets : public EvidenceKeeper {
   ParticleSets(const ParticleOptions& options, double min_length)
       : options_(options), longest_(options.longest * min_length) {}
 
-  void add(const std::vector<ObservationPoint>& observation, Evidence& evidence) const override {
+  void add(const std::vector<ObservationPoint>& observation, SegmentEvidence& evidence) const override {
     for (const ObservationPoint& point : observation) evidence.particles.push_back(point.position.cast<float>());
   }
 
-  void settle(double length, std::uint64_t number, Evidence& evidence) const override {
+  void settle(double length, std::uint64_t number, SegmentEvidence& evidence) const override {
     Random random = Random::forPart(options_.seed, number);
     if (options_.limit == ParticleLimit::Segment)
       limitSegment(length, random, evidence.particles);
     else
       limitBins(random, evidence);
     if (4 * evidence.particles.capacity() > 5 * evidence.particles.size()) evidence.particles.shrink_to_fit();
-    for (Cell& cell : evidence.row.cells()) cell.hits = LineMoments();
+    for (SegmentCell& cell : evidence.row.cells()) cell.hits = LineMoments();
     const double weight = 1.0 / options_.samples;
     for (const Particle& particle : evidence.particles) evidence.row.add(particle.cast<double>(), weight);
     evidence.row.trim();
@@ -53,7 +53,7 @@ class ParticleSets : public EvidenceKeeper {
   }
 
   /// The same within each bin.
-  void limitBins(Random& random, Evidence& evidence) const {
+  void limitBins(Random& random, SegmentEvidence& evidence) const {
     const double per_bin = options_.per_metre * options_.bin;
     const std::size_t limit = static_cast<std::size_t>(std::max(per_bin, double(options_.samples)));
     const auto binOf = [&](const Particle& particle) {
@@ -88,8 +88,8 @@ class ParticleSets : public EvidenceKeeper {
 
 }  // namespace
 
-Evidence Evidence::slice(std::size_t first, std::size_t last) const {
-  Evidence part;
+SegmentEvidence SegmentEvidence::slice(std::size_t first, std::size_t last) const {
+  SegmentEvidence part;
   part.row = row.slice(first, last);
   const int from = row.first() + static_cast<int>(first), to = row.first() + static_cast<int>(last);
   for (const Particle& particle : particles) {
@@ -99,7 +99,7 @@ Evidence Evidence::slice(std::size_t first, std::size_t last) const {
   return part;
 }
 
-void Evidence::absorb(const Evidence& other) {
+void SegmentEvidence::absorb(const SegmentEvidence& other) {
   row.absorb(other.row);
   particles.insert(particles.end(), other.particles.begin(), other.particles.end());
 }
@@ -110,4 +110,4 @@ std::unique_ptr<EvidenceKeeper> makeEvidenceKeeper(const SegmentFitterOptions& o
   return std::make_unique<MomentCells>();
 }
 
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

@@ -8,18 +8,18 @@
 #include "gaussmap/segments/segment_fitter.h"
 #include "segments/cell_row.h"
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 
 using Particle = Eigen::Matrix<float, 2, 1, Eigen::DontAlign>;
 
 /// What a segment remembers.
-struct Evidence {
+struct SegmentEvidence {
   CellRow row;                      ///< where it lies; all there is with EvidencePolicy::MomentCells
   std::vector<Particle> particles;  ///< with EvidencePolicy::ParticleSets: what `row` is made of
 
   /// What is in the cells [first, last) of the row.
-  Evidence slice(std::size_t first, std::size_t last) const;
-  void absorb(const Evidence& other);
+  SegmentEvidence slice(std::size_t first, std::size_t last) const;
+  void absorb(const SegmentEvidence& other);
   std::size_t bytes() const { return row.bytes() + particles.capacity() * sizeof(Particle); }
 };
 
@@ -27,12 +27,12 @@ struct Evidence {
 class EvidenceKeeper {
  public:
   virtual ~EvidenceKeeper() = default;
-  virtual void add(const std::vector<ObservationPoint>& observation, Evidence& evidence) const = 0;
+  virtual void add(const std::vector<ObservationPoint>& observation, SegmentEvidence& evidence) const = 0;
   /// After all observations of a scan: forgets what is too much, for a segment of this length [m]. `number` is
   /// another one each time.
-  virtual void settle(double length, std::uint64_t number, Evidence& evidence) const = 0;
+  virtual void settle(double length, std::uint64_t number, SegmentEvidence& evidence) const = 0;
 };
 
 std::unique_ptr<EvidenceKeeper> makeEvidenceKeeper(const SegmentFitterOptions& options);
 
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

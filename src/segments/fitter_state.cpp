@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gaussmap {
-
-using namespace segments;
+namespace gaussmap::detail {
 
 namespace {
 
@@ -15,7 +13,7 @@ constexpr double kFewestRays = 10.0;  // through what is pruned
 
 }  // namespace
 
-int SegmentFitter::State::create() {
+int SegmentFitterState::create() {
   int id = static_cast<int>(segments.size());
   if (unused.empty()) {
     segments.emplace_back();
@@ -27,14 +25,14 @@ int SegmentFitter::State::create() {
   return id;
 }
 
-void SegmentFitter::State::remove(int id) {
+void SegmentFitterState::remove(int id) {
   detach(id, segments);
   index.erase(id);
   segments[id] = LiveSegment();
   unused.push_back(id);
 }
 
-int SegmentFitter::State::split(int id, std::size_t cut, bool linked) {
+int SegmentFitterState::split(int id, std::size_t cut, bool linked) {
   const int next = segments[id].next, previous = segments[id].previous;
   detach(id, segments);
   const LiveSegment whole = std::move(segments[id]);
@@ -49,7 +47,7 @@ int SegmentFitter::State::split(int id, std::size_t cut, bool linked) {
   return other;
 }
 
-void SegmentFitter::State::merge(int into, int from) {
+void SegmentFitterState::merge(int into, int from) {
   int previous = segments[into].previous, next = segments[into].next;
   if (next == from || next == kNone) next = segments[from].next;
   if (previous == from || previous == kNone) previous = segments[from].previous;
@@ -62,12 +60,12 @@ void SegmentFitter::State::merge(int into, int from) {
   enter(into);
 }
 
-std::size_t SegmentFitter::State::prune() {
+std::size_t SegmentFitterState::prune() {
   std::size_t pruned = 0;
   for (int id = 0; id < static_cast<int>(segments.size()); ++id) {
     if (!segments[id].alive) continue;
     double crossed = 0.0;
-    for (const Cell& cell : segments[id].evidence.row.cells()) crossed += cell.crossed;
+    for (const SegmentCell& cell : segments[id].evidence.row.cells()) crossed += cell.crossed;
     if (crossed < kFewestRays || crossed < kMany * segments[id].spread.beams()) continue;
     remove(id);
     ++pruned;
@@ -75,16 +73,16 @@ std::size_t SegmentFitter::State::prune() {
   return pruned;
 }
 
-Strip SegmentFitter::State::polygon(const LiveSegment& segment) const {
+Strip SegmentFitterState::polygon(const LiveSegment& segment) const {
   return {segment.start() - options.growth * segment.line.direction, segment.line.direction,
           segment.length() + 2.0 * options.growth,
           std::max(options.min_half_width, 3.0 * std::sqrt(segment.line.across))};
 }
 
-SegmentGoals SegmentFitter::State::inMap(SegmentGoals goals) const {
+SegmentGoals SegmentFitterState::inMap(SegmentGoals goals) const {
   goals.start += origin;
   goals.end += origin;
   return goals;
 }
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

@@ -12,24 +12,21 @@
 #include "segments/scan_beams.h"
 #include "segments/segment_index.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 
-struct SegmentFitter::State {
-  using LiveSegment = segments::LiveSegment;
-  using ScanBeams = segments::ScanBeams;
-
+struct SegmentFitterState {
   SegmentFitterOptions options;
   std::shared_ptr<SegmentUtility> utility;
   std::unique_ptr<ObservationModel> model;
-  std::unique_ptr<segments::EvidenceKeeper> keeper;
+  std::unique_ptr<EvidenceKeeper> keeper;
 
   Vector<2> origin{0.0, 0.0};  ///< first sensor position, whole metres: sums are taken about it
   std::int64_t scans = 0;
   std::uint64_t observations = 0, settled = 0;  ///< numbers for the random generators
   std::deque<LiveSegment> segments;
   std::vector<int> unused;  ///< numbers of segments that are not alive
-  segments::SegmentIndex index;
-  segments::Views views;
+  SegmentIndex index;
+  Views views;
   std::vector<ObservationPoint> points;  ///< of the observation at hand
 
   // add_scan.cpp
@@ -61,9 +58,9 @@ struct SegmentFitter::State {
   /// Deletes segments that many more rays cross than end on, and says how many.
   std::size_t prune();
   /// The polygon whose points fall to a segment.
-  segments::Strip polygon(const LiveSegment& segment) const;
+  Strip polygon(const LiveSegment& segment) const;
   void enter(int id) { index.update(id, polygon(segments[id])); }
   SegmentGoals inMap(SegmentGoals goals) const;
 };
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "common/pi.h"
+#include "core/pi.h"
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 namespace {
 
 constexpr double kBehind = 0.2;    // a ray crosses what it passes by more than this [m]
@@ -84,7 +84,7 @@ void Views::add(const LaserScan& scan) {
 
 void Views::countCrossings(std::deque<LiveSegment>& segments) const {
   for (LiveSegment& segment : segments)
-    for (Cell& cell : segment.evidence.row.cells()) cell.crossed = 0.0;
+    for (SegmentCell& cell : segment.evidence.row.cells()) cell.crossed = 0.0;
   for (const auto& entry : views_) {
     const View& view = entry.second;
     LaserScan scan;
@@ -93,7 +93,7 @@ void Views::countCrossings(std::deque<LiveSegment>& segments) const {
     scan.bearings.assign(view.bearings->begin(), view.bearings->end());
     scan.ranges.assign(view.ranges.begin(), view.ranges.end());
     scan.max_range = std::numeric_limits<double>::infinity();
-    segments::countCrossings(ScanBeams(scan), view.scans, segments);
+    detail::countCrossings(ScanBeams(scan), view.scans, segments);
   }
 }
 
@@ -109,4 +109,4 @@ std::size_t Views::bytes() const {
   return sum;
 }
 
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

@@ -11,7 +11,7 @@
 #include "segments/live_segment.h"
 #include "segments/scan_beams.h"
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 
 /// Adds to every cell the rays that went through it and ended well behind, times `weight`.
 void countCrossings(const ScanBeams& beams, double weight, std::deque<LiveSegment>& segments);
@@ -38,4 +38,4 @@ class Views {
   std::shared_ptr<const std::vector<float>> bearings_;  // of the last one that was kept
 };
 
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

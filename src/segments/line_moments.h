@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gaussmap/gaussian/gaussian.h"
+#include "gaussmap/core/gaussian.h"
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 
 /// Weighted sums of points up to the second order [m, m^2], about an origin that is near them.
 struct LineMoments {
@@ -91,4 +91,4 @@ inline double squaredError(const LineMoments& m) {
   return m.n * std::max(0.0, 0.5 * (a + c) - std::sqrt(half * half + b * b));
 }
 
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

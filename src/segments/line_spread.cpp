@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "segments/line_spread.h"
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 namespace {
 
 constexpr double kFloor = 1e-12;  // keeps covariances positive definite
@@ -102,4 +102,4 @@ Matrix<2> LineSpread::covariance(const LineFit& line) const {
   return result;
 }
 
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

@@ -5,7 +5,7 @@
 
 #include "segments/line_moments.h"
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 
 /// Beams of one scan that fell to one line: with t the position of their ends along it.
 struct BeamSums {
@@ -47,4 +47,4 @@ class LineSpread {
   Matrix<3> last_covariance_ = Matrix<3>::Zero();
 };
 
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

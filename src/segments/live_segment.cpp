@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 namespace {
 
 constexpr double kTurn = 0.1;      // sine of the angle between line and row from which on the cells are made anew
@@ -20,7 +20,7 @@ struct RowShape {
 
 RowShape shapeOf(const CellRow& row, std::size_t first, std::size_t last, const LineFit& line) {
   RowShape shape;
-  const std::vector<Cell>& cells = row.cells();
+  const std::vector<SegmentCell>& cells = row.cells();
   for (std::size_t i = first; i < last; ++i) {
     const LineMoments& hits = cells[i].hits;
     if (hits.n <= 0.0) continue;
@@ -143,12 +143,12 @@ SegmentGoals goalsTogether(const LiveSegment& a, const LiveSegment& b) {
 }
 
 std::size_t bestBreak(const CellRow& row) {
-  const auto weighted = [](const Cell& cell) {
+  const auto weighted = [](const SegmentCell& cell) {
     return cell.hits.n > 0.0 ? cellWeight(cell.hits.n) / cell.hits.n * cell.hits : LineMoments();
   };
-  const std::vector<Cell>& cells = row.cells();
+  const std::vector<SegmentCell>& cells = row.cells();
   LineMoments left, right;
-  for (const Cell& cell : cells) right += weighted(cell);
+  for (const SegmentCell& cell : cells) right += weighted(cell);
   std::size_t best = 0;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i + 1 < cells.size(); ++i) {
@@ -186,4 +186,4 @@ void detach(int id, std::deque<LiveSegment>& segments) {
   if (segments[id].previous != kNone) unlinkNext(segments[id].previous, segments);
 }
 
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

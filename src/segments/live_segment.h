@@ -8,7 +8,7 @@
 #include "segments/evidence.h"
 #include "segments/line_spread.h"
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 
 inline constexpr int kNone = -1;
 
@@ -25,7 +25,7 @@ inline double cellWeight(double n) {
 /// A segment while it grows. Coordinates are relative to the origin of the map's sums.
 struct LiveSegment {
   bool alive = false;
-  Evidence evidence;
+  SegmentEvidence evidence;
   LineFit line;
   double begin = 0.0, end = 0.0;  ///< extent along the line [m]
   LineMoments total;              ///< of all evidence
@@ -79,4 +79,4 @@ void unlinkNext(int id, std::deque<LiveSegment>& segments);
 /// Takes a segment out of its chain.
 void detach(int id, std::deque<LiveSegment>& segments);
 
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

@@ -4,8 +4,9 @@
 #include "segments/fitter_state.h"
 
 namespace gaussmap {
+using namespace detail;
 
-using namespace segments;
+using namespace detail;
 
 namespace {
 
@@ -32,7 +33,7 @@ std::size_t bestBreakOfBeams(const ScanBeams& beams, std::size_t first, std::siz
 
 }  // namespace
 
-LiveSegment SegmentFitter::State::segmentOf(const ScanBeams& beams, std::size_t first, std::size_t last) const {
+LiveSegment SegmentFitterState::segmentOf(const ScanBeams& beams, std::size_t first, std::size_t last) const {
   LiveSegment segment;
   LineMoments sum;
   for (std::size_t i = first; i < last; ++i) {
@@ -46,8 +47,8 @@ LiveSegment SegmentFitter::State::segmentOf(const ScanBeams& beams, std::size_t 
   return segment;
 }
 
-void SegmentFitter::State::createFrom(const ScanBeams& beams, std::size_t first, std::size_t last,
-                                      std::vector<int>& owners, std::vector<int>& touched) {
+void SegmentFitterState::createFrom(const ScanBeams& beams, std::size_t first, std::size_t last,
+                                    std::vector<int>& owners, std::vector<int>& touched) {
   const LiveSegment whole = segmentOf(beams, first, last);
   if (last - first >= kFewestToSplit) {
     const std::size_t cut = bestBreakOfBeams(beams, first, last);

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 namespace {
 
 constexpr double kCorner = 0.17;        // sine of the smallest angle between lines that are joined
@@ -16,7 +16,7 @@ constexpr double kReach = 0.15;         // by which a segment is lengthened or s
 
 /// The line without the cells at its ends, which hold a little of what stands next to it and pull the line there.
 LiveSegment withoutEnds(LiveSegment live) {
-  const std::vector<Cell>& cells = live.evidence.row.cells();
+  const std::vector<SegmentCell>& cells = live.evidence.row.cells();
   if (cells.size() < kManyCells) return live;
   LineMoments inner;
   for (std::size_t i = kEndCells; i + kEndCells < cells.size(); ++i) inner += cells[i].hits;
@@ -125,4 +125,4 @@ SegmentMap outputMap(const std::deque<LiveSegment>& live, const Vector<2>& origi
   return map;
 }
 
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

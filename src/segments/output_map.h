@@ -6,9 +6,9 @@
 #include "gaussmap/segments/segment_map.h"
 #include "segments/live_segment.h"
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 
 /// Segments in the map frame, chain by chain, linked neighbours joined where their lines meet.
 SegmentMap outputMap(const std::deque<LiveSegment>& segments, const Vector<2>& origin);
 
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

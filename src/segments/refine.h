@@ -5,10 +5,10 @@
 
 #include "segments/fitter_state.h"
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 
 /// The segments of a state, all decided on together: which lines explain the most of its evidence for what they cost.
 /// The state stays as it is.
-std::deque<LiveSegment> refineSegments(const SegmentFitter::State& state);
+std::deque<LiveSegment> refineSegments(const SegmentFitterState& state);
 
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

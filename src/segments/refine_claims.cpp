@@ -3,7 +3,7 @@
 
 #include "segments/refinement.h"
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 namespace {
 
 constexpr double kSame = 0.5;   // cosine from which on segments look the same way
@@ -35,7 +35,7 @@ std::vector<std::vector<Refinement::Claim>> Refinement::claims(Side side) {
 void Refinement::reassign() {
   const std::vector<std::vector<Claim>> all = claims(Side::Same);
   for (LiveSegment& segment : segments_)
-    for (Cell& cell : segment.evidence.row.cells()) cell.hits = LineMoments();
+    for (SegmentCell& cell : segment.evidence.row.cells()) cell.hits = LineMoments();
   for (std::size_t i = 0; i < atoms_.size(); ++i) {
     if (all[i].empty()) continue;
     CellRow& row = segments_[all[i].front().segment].evidence.row;
@@ -92,4 +92,4 @@ void Refinement::removeRedundant() {
   }
 }
 
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

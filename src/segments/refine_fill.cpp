@@ -5,12 +5,12 @@
 
 #include "segments/refinement.h"
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 namespace {
 
-constexpr double kReach = 1.0;      // how far what becomes a new segment lies from one atom of it [m]
-constexpr double kShortest = 0.05;  // between two atoms that give a direction [m]
-constexpr double kLittle = 4.0;     // a segment explains little if it is worth less than so many segments cost
+constexpr double kFillReach = 1.0;      // how far what becomes a new segment lies from one atom of it [m]
+constexpr double kShortestBase = 0.05;  // between two atoms that give a direction [m]
+constexpr double kLittle = 4.0;         // a segment explains little if it is worth less than so many segments cost
 
 }  // namespace
 
@@ -35,7 +35,7 @@ class Refinement::Search {
         const auto cell = lattice_.find(key(mean(atom), dx, dy));
         if (cell == lattice_.end()) continue;
         for (const int other : cell->second)
-          if ((mean(other) - mean(atom)).norm() < kReach) near.push_back(other);
+          if ((mean(other) - mean(atom)).norm() < kFillReach) near.push_back(other);
       }
     return near;
   }
@@ -50,7 +50,7 @@ class Refinement::Search {
       const double length = step.norm();
       if (other == atom)
         line.direction = own_.state_.segments[own_.atoms_[atom].owner].line.direction;
-      else if (length < kShortest)
+      else if (length < kShortestBase)
         continue;
       else
         line.direction = step / length;
@@ -90,8 +90,8 @@ class Refinement::Search {
   Vector<2> mean(int atom) const { return own_.atoms_[atom].hits.mean(); }
 
   static std::uint64_t key(const Vector<2>& place, int dx, int dy) {
-    const auto x = static_cast<std::int64_t>(std::floor(place.x() / kReach)) + dx,
-               y = static_cast<std::int64_t>(std::floor(place.y() / kReach)) + dy;
+    const auto x = static_cast<std::int64_t>(std::floor(place.x() / kFillReach)) + dx,
+               y = static_cast<std::int64_t>(std::floor(place.y() / kFillReach)) + dy;
     return (static_cast<std::uint64_t>(x) << 32) ^ (static_cast<std::uint64_t>(y) & 0xFFFFFFFFu);
   }
 
@@ -103,7 +103,7 @@ void Refinement::fill() {
   for (std::size_t i = 0; i < segments_.size(); ++i) {
     const int id = static_cast<int>(i);
     const LiveSegment& segment = segments_[id];
-    if (segment.alive && segment.length() < kReach && !closesCorner(id) &&
+    if (segment.alive && segment.length() < kFillReach && !closesCorner(id) &&
         worth_.of(segment) < kLittle * worth_.segment_cost)
       remove(id);
   }
@@ -156,4 +156,4 @@ LiveSegment Refinement::fromAtoms(const std::vector<int>& members, const LineFit
   return segment;
 }
 
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "segments/refinement.h"
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 namespace {
 
 constexpr double kParallel = 0.95;  // cosine from which on two segments may be one
@@ -54,4 +54,4 @@ bool Refinement::mergeBest(int id) {
   return true;
 }
 
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

@@ -6,16 +6,16 @@
 
 #include "segments/refine.h"
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 namespace {
 
-constexpr double kNear = 0.15;    // ends that are linked without a scan that linked them [m]
-constexpr double kUpright = 0.7;  // sine from which on neighbours make a corner
-constexpr double kCorner = 0.2;   // between the ends at a corner [m]
+constexpr double kNear = 0.15;       // ends that are linked without a scan that linked them [m]
+constexpr double kCornerSine = 0.7;  // sine from which on neighbours make a corner
+constexpr double kCornerGap = 0.2;   // between the ends at a corner [m]
 
 }  // namespace
 
-Refinement::Refinement(const SegmentFitter::State& state) : state_(state), segments_(state.segments) {
+Refinement::Refinement(const SegmentFitterState& state) : state_(state), segments_(state.segments) {
   double observations = 0.0;
   for (std::size_t id = 0; id < segments_.size(); ++id) {
     LiveSegment& segment = segments_[id];
@@ -25,7 +25,7 @@ Refinement::Refinement(const SegmentFitter::State& state) : state_(state), segme
     const double scale =
         state.options.policy == EvidencePolicy::ParticleSets ? segment.spread.beams() / segment.total.n : 1.0;
     segment.total = scale * segment.total;
-    for (Cell& cell : segment.evidence.row.cells()) {
+    for (SegmentCell& cell : segment.evidence.row.cells()) {
       if (cell.hits.n <= 0.0) continue;
       cell.hits = scale * cell.hits;
       atoms_.push_back({cell.hits, static_cast<int>(id), cell.hits.n / segment.total.n});
@@ -69,7 +69,7 @@ bool Refinement::closesCorner(int id) const {
   if (segment.next == kNone || segment.previous == kNone || segment.degenerate()) return false;
   const auto corner = [&](const LiveSegment& other, const Vector<2>& own_end, const Vector<2>& other_end) {
     const Vector<2>&u = segment.line.direction, &v = other.line.direction;
-    return std::abs(u.x() * v.y() - u.y() * v.x()) > kUpright && (own_end - other_end).norm() < kCorner &&
+    return std::abs(u.x() * v.y() - u.y() * v.x()) > kCornerSine && (own_end - other_end).norm() < kCornerGap &&
            other.length() > segment.length();
   };
   const LiveSegment &next = segments_[segment.next], &previous = segments_[segment.previous];
@@ -134,7 +134,7 @@ void Refinement::remove(int id) {
   segments_[id] = LiveSegment();
 }
 
-std::deque<LiveSegment> refineSegments(const SegmentFitter::State& state) {
+std::deque<LiveSegment> refineSegments(const SegmentFitterState& state) {
   Refinement refinement(state);
   refinement.linkNear();
   refinement.cut();
@@ -149,4 +149,4 @@ std::deque<LiveSegment> refineSegments(const SegmentFitter::State& state) {
   return refinement.result();
 }
 
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

@@ -7,12 +7,12 @@
 #include "segments/fitter_state.h"
 #include "segments/worth.h"
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 
 /// A copy of the segments of a state on the way to a better set. Its steps in the order of refineSegments().
 class Refinement {
  public:
-  explicit Refinement(const SegmentFitter::State& state);
+  explicit Refinement(const SegmentFitterState& state);
 
   // refinement.cpp
   /// Every segment becomes those stretches of it that are worth keeping, looking at all rays that passed.
@@ -63,11 +63,11 @@ class Refinement {
   /// A segment of these atoms along a line.
   LiveSegment fromAtoms(const std::vector<int>& members, const LineFit& line) const;
 
-  const SegmentFitter::State& state_;
+  const SegmentFitterState& state_;
   Worth worth_;
   std::vector<Atom> atoms_;
   std::deque<LiveSegment> segments_;
   SegmentIndex index_;
 };
 
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

@@ -7,7 +7,7 @@
 
 #include "gaussmap/segments/laser_scan.h"
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 
 /// A scan about the origin of the map's sums.
 struct ScanBeams {
@@ -24,4 +24,4 @@ struct ScanBeams {
   const Vector<2>& sensor() const { return scan.pose.translation; }
 };
 
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <limits>
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 namespace {
 
-constexpr std::size_t kFewest = 3;  // beams that tell a direction ...
-constexpr double kShortest = 1.3;   // ... over so many tolerances
+constexpr std::size_t kFewest = 3;      // beams that tell a direction ...
+constexpr double kShortestPiece = 1.3;  // ... over so many tolerances
 
 }  // namespace
 
@@ -58,7 +58,7 @@ std::vector<Vector<2>> straightPieces(const std::vector<BeamRun>& runs, const st
       }
     }
     if (most <= tolerance) {
-      if (length < kShortest * tolerance) continue;
+      if (length < kShortestPiece * tolerance) continue;
       for (std::size_t i = run.first; i < run.last; ++i) pieces[i] = chord;
       continue;
     }
@@ -71,4 +71,4 @@ std::vector<Vector<2>> straightPieces(const std::vector<BeamRun>& runs, const st
   return pieces;
 }
 
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

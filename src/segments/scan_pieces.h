@@ -6,7 +6,7 @@
 
 #include "segments/scan_beams.h"
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 
 /// Neighbouring beams [first, last).
 struct BeamRun {
@@ -24,4 +24,4 @@ std::vector<BeamRun> findRuns(const ScanBeams& beams, double gap);
 std::vector<Vector<2>> straightPieces(const std::vector<BeamRun>& runs, const std::vector<Vector<2>>& hits,
                                       double tolerance);
 
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

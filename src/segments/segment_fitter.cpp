@@ -7,14 +7,15 @@
 #include <stdexcept>
 #include <string>
 
-#include "mapping/check_options.h"
+#include "mapping/moving/check_options.h"
 #include "segments/fitter_state.h"
 #include "segments/output_map.h"
 #include "segments/refine.h"
 
 namespace gaussmap {
+using namespace detail;
 
-using namespace segments;
+using namespace detail;
 
 namespace {
 
@@ -59,7 +60,7 @@ void check(const LaserScan& scan) {
 }  // namespace
 
 SegmentFitter::SegmentFitter(const SegmentFitterOptions& options, std::shared_ptr<SegmentUtility> utility)
-    : state_(std::make_unique<State>()) {
+    : state_(std::make_unique<SegmentFitterState>()) {
   check(options);
   state_->options = options;
   state_->utility = utility ? std::move(utility) : std::make_shared<DescriptionLengthUtility>();
@@ -91,7 +92,7 @@ std::vector<Vector<2>> SegmentFitter::evidence() const {
     for (const Particle& particle : segment.evidence.particles)
       points.push_back(state_->origin + particle.cast<double>());
     if (!segment.evidence.particles.empty()) continue;
-    for (const Cell& cell : segment.evidence.row.cells())
+    for (const SegmentCell& cell : segment.evidence.row.cells())
       if (cell.hits.n > 0.0) points.push_back(state_->origin + cell.hits.mean());
   }
   return points;
@@ -106,7 +107,7 @@ const SegmentFitterOptions& SegmentFitter::options() const {
 }
 
 std::size_t SegmentFitter::memoryBytes() const {
-  std::size_t sum = sizeof(State) + state_->index.bytes() + state_->views.bytes();
+  std::size_t sum = sizeof(SegmentFitterState) + state_->index.bytes() + state_->views.bytes();
   for (const LiveSegment& segment : state_->segments) sum += sizeof(LiveSegment) + segment.evidence.bytes();
   return sum;
 }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 namespace {
 
 constexpr double kSlack = 0.15;  // strips are entered with so much room to move [m]
@@ -89,4 +89,4 @@ std::int64_t SegmentIndex::lattice(double coordinate) const {
   return static_cast<std::int64_t>(std::floor(coordinate / cell_));
 }
 
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

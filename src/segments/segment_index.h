@@ -5,9 +5,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include "gaussmap/gaussian/gaussian.h"
+#include "gaussmap/core/gaussian.h"
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 
 /// The polygon whose points belong to a segment: a rectangle about its middle line.
 struct Strip {
@@ -47,4 +47,4 @@ class SegmentIndex {
   std::vector<int> none_;
 };
 
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

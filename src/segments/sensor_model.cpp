@@ -5,9 +5,11 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "mapping/check_options.h"
+#include "mapping/moving/check_options.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 void check(const SensorNoise& noise) {

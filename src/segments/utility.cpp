@@ -6,9 +6,11 @@
 #include <limits>
 #include <stdexcept>
 
-#include "mapping/check_options.h"
+#include "mapping/moving/check_options.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 constexpr double kNever = -std::numeric_limits<double>::infinity();

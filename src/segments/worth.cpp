@@ -4,36 +4,36 @@
 #include <algorithm>
 #include <limits>
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 
 double Worth::explained(const LineMoments& hits, const LineFit& line) const {
   const double ratio = hits.squaredDistance(line.center, line.normal()) / (tolerance * tolerance);
   return ratio < 1.0 ? hits.n * (1.0 - ratio * ratio * ratio) : 0.0;
 }
 
-double Worth::costOfCell(const std::vector<Cell>& cells, std::size_t i) const {
+double Worth::costOfCell(const std::vector<SegmentCell>& cells, std::size_t i) const {
   // A single empty cell is no hole: what moves from one row to another may fall to its neighbours.
   const auto empty = [&](std::size_t k) { return k < cells.size() && cells[k].hits.n <= 0.0; };
   const bool hole = empty(i) && ((i > 0 && empty(i - 1)) || empty(i + 1));
   return cell_cost + crossing_cost * cells[i].crossed + (hole ? hole_cost : 0.0);
 }
 
-double Worth::costOf(const std::vector<Cell>& cells) const {
+double Worth::costOf(const std::vector<SegmentCell>& cells) const {
   double sum = segment_cost;
   for (std::size_t i = 0; i < cells.size(); ++i) sum += costOfCell(cells, i);
   return sum;
 }
 
 double Worth::of(const LiveSegment& segment) const {
-  const std::vector<Cell>& cells = segment.evidence.row.cells();
+  const std::vector<SegmentCell>& cells = segment.evidence.row.cells();
   double sum = -costOf(cells);
-  for (const Cell& cell : cells)
+  for (const SegmentCell& cell : cells)
     if (cell.hits.n > 0.0) sum += explained(cell.hits, segment.line);
   return sum;
 }
 
 std::vector<CellRange> worthKeeping(const CellRow& row, const LineFit& line, const Worth& worth) {
-  const std::vector<Cell>& cells = row.cells();
+  const std::vector<SegmentCell>& cells = row.cells();
   // Of the cells before number i: the highest worth of all choices, and of those that keep cell i - 1, with the cell
   // that the stretch of that one begins with.
   std::vector<double> best(cells.size() + 1, 0.0), kept(cells.size() + 1, -std::numeric_limits<double>::infinity());
@@ -59,4 +59,4 @@ std::vector<CellRange> worthKeeping(const CellRow& row, const LineFit& line, con
   return ranges;
 }
 
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

@@ -6,7 +6,7 @@
 
 #include "segments/live_segment.h"
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 
 /// What a segment is good for, in observations.
 struct Worth {
@@ -20,9 +20,9 @@ struct Worth {
   /// is off by a third of it is as well explained as one that is not.
   double explained(const LineMoments& hits, const LineFit& line) const;
   /// What cell `i` of a row costs.
-  double costOfCell(const std::vector<Cell>& cells, std::size_t i) const;
+  double costOfCell(const std::vector<SegmentCell>& cells, std::size_t i) const;
   /// What a segment with these cells costs.
-  double costOf(const std::vector<Cell>& cells) const;
+  double costOf(const std::vector<SegmentCell>& cells) const;
   /// What a segment explains less what it costs.
   double of(const LiveSegment& segment) const;
 };
@@ -37,4 +37,4 @@ struct CellRange {
 /// The stretches of a row that together are worth most as segments on a line, in order: exact, by dynamic programming.
 std::vector<CellRange> worthKeeping(const CellRow& row, const LineFit& line, const Worth& worth);
 
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

@@ -3,10 +3,12 @@
 // 8.5 m on, a side road, a park.
 #include <cmath>
 
-#include "gaussmap/simulation/mesh_shapes.h"
+#include "mesh/shapes.h"
 #include "simulation/worlds.h"
 
 namespace gaussmap::simulation {
+using namespace detail;
+
 namespace {
 
 constexpr double kKerb = 0.12;  // height of the sidewalk [m]

@@ -6,9 +6,11 @@
 #include <limits>
 #include <utility>
 
-#include "gaussmap/simulation/mesh_shapes.h"
+#include "mesh/shapes.h"
 
 namespace gaussmap::simulation {
+using namespace detail;
+
 namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "gaussmap/evaluation/triangle_mesh.h"
+#include "gaussmap/mesh/triangle_mesh.h"
 
 // Rooms, streets and building fronts are made of rectangles at different levels: painted one over the other on a plane,
 // then turned into exactly the surfaces that can be seen, without any hidden within walls.

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/simulation/scene.h"
+#include "core/pi.h"
+#include "simulation/scene.h"
 
 namespace gaussmap {
-namespace {
+using namespace detail;
 
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
+namespace {
 
 Pose::Rotation turned(double yaw, double pitch, double roll) {
   return Pose::Rotation(Eigen::AngleAxisd(yaw * kDegree, Eigen::Vector3d::UnitZ()) *

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A hall of 18 m x 12 m, a corridor behind it, two rooms on either side of that.
-#include "gaussmap/simulation/mesh_shapes.h"
+#include "mesh/shapes.h"
 #include "simulation/worlds.h"
 
 namespace gaussmap::simulation {
+using namespace detail;
+
 namespace {
 
 constexpr double kHall = 5.0, kCorridor = 2.7, kRoom = 3.0, kDoor = 2.1;  // heights [m]

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/simulation/lidar.h"
+#include "simulation/lidar.h"
 
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
-#include "common/parallel.h"
-#include "gaussmap/gaussian/random.h"
+#include "core/parallel.h"
+#include "core/pi.h"
+#include "gaussmap/core/random.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 constexpr std::size_t kGrain = 16;  // columns a task
 constexpr double kGrazing = 1e-4;
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simulation/path.h"
+#include "core/pi.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -8,7 +9,6 @@
 namespace gaussmap::simulation {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 constexpr int kRoundings = 3;
 constexpr double kLook = 0.3;  // the way looks from so far behind to so far ahead [m]
 

@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "gaussmap/io/pose.h"
-#include "gaussmap/simulation/trajectory.h"
+#include "gaussmap/core/pose.h"
+#include "simulation/trajectory.h"
 
 namespace gaussmap::simulation {
 

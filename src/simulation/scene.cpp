@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/simulation/scene.h"
+#include "simulation/scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,11 @@
 #include <stdexcept>
 #include <string>
 
-#include "common/pi.h"
+#include "core/pi.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 constexpr double kMostSurfacePoints = 1e9;
@@ -157,6 +159,21 @@ std::vector<Eigen::Vector3d> sampleSurface(const Scene& scene, double spacing) {
   for (const Rectangle& rectangle : scene.rectangles) append(rectangle, spacing, points);
   for (const Cylinder& cylinder : scene.cylinders) append(cylinder, spacing, points);
   return points;
+}
+
+TriangleMesh triangulate(const Scene& scene, double deviation) {
+  checkScene(scene);
+  if (!(deviation > 0.0))
+    throw std::invalid_argument("deviation = " + std::to_string(deviation) + ": must be a positive number of metres");
+  TriangleMesh mesh;
+  for (const Rectangle& rectangle : scene.rectangles) append(mesh, rectangleMesh(rectangle));
+  for (const Cylinder& cylinder : scene.cylinders) {
+    // A chord over the angle 2 a is at most r (1 - cos a) off its arc.
+    const double angle = std::acos(std::max(0.5, 1.0 - deviation / cylinder.radius));
+    const double facets = std::ceil(kPi / std::max(angle, kPi / kMaxFacets));
+    append(mesh, cylinderMesh(cylinder, static_cast<int>(facets)));
+  }
+  return mesh;
 }
 
 }  // namespace gaussmap

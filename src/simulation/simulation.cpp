@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/simulation/simulation.h"
+#include "simulation/simulation.h"
 
 #include <limits>
 #include <stdexcept>
 #include <string>
 
-#include "gaussmap/gaussian/random.h"
-#include "gaussmap/simulation/mesh_shapes.h"
+#include "gaussmap/core/random.h"
+#include "mesh/shapes.h"
 #include "simulation/worlds.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 using namespace simulation;

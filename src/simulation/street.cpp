@@ -3,13 +3,15 @@
 // on; poles, trees with closed crowns, parked cars of two boxes, a fence.
 #include <algorithm>
 
-#include "gaussmap/simulation/mesh_shapes.h"
+#include "mesh/shapes.h"
 #include "simulation/worlds.h"
 
 namespace gaussmap::simulation {
+using namespace detail;
+
 namespace {
 
-constexpr double kKerb = 0.12;  // height of the sidewalk [m]
+constexpr double kStreetKerb = 0.12;  // height of the sidewalk [m]
 
 /// 15 m of front each, a gap after every fourth.
 void addBuildings(TriangleMesh& mesh, double side) {
@@ -29,7 +31,7 @@ std::vector<double> placesAlong(double first, double step) {
 
 void addTrees(TriangleMesh& mesh, double side) {
   for (const double x : placesAlong(-4 + 7 * side, 30)) {
-    append(mesh, cylinderMesh({{x, 6.2 * side, kKerb}, {0, 0, 3.4}, 0.16}, 16));
+    append(mesh, cylinderMesh({{x, 6.2 * side, kStreetKerb}, {0, 0, 3.4}, 0.16}, 16));
     append(mesh, ellipsoidMesh({x, 6.2 * side, 4.3}, {1.5, 1.5, 1.3}, 32));
   }
 }
@@ -50,24 +52,24 @@ Pose streetPlacement() {
 TriangleMesh streetMesh() {
   TriangleMesh mesh = rectangleMesh({{-20, -5, 0}, {150, 0, 0}, {0, 10, 0}});
   for (const double side : {-1.0, 1.0}) {
-    append(mesh, rectangleMesh({{-20, 5 * side, 0}, {150, 0, 0}, {0, 0, kKerb}}));
-    append(mesh, rectangleMesh({{-20, 5 * side, kKerb}, {150, 0, 0}, {0, 6 * side, 0}}));
+    append(mesh, rectangleMesh({{-20, 5 * side, 0}, {150, 0, 0}, {0, 0, kStreetKerb}}));
+    append(mesh, rectangleMesh({{-20, 5 * side, kStreetKerb}, {150, 0, 0}, {0, 6 * side, 0}}));
     addBuildings(mesh, side);
     addTrees(mesh, side);
     addCars(mesh, side);
     for (const double x : placesAlong(-12 + 5 * side, 20))
-      append(mesh, cylinderMesh({{x, 5.5 * side, kKerb}, {0, 0, 6}, 0.1}, 16));
+      append(mesh, cylinderMesh({{x, 5.5 * side, kStreetKerb}, {0, 0, 6}, 0.1}, 16));
   }
-  append(mesh, boxMesh({60, 7.0, kKerb}, {90, 7.05, 1.2}));  // a fence
+  append(mesh, boxMesh({60, 7.0, kStreetKerb}, {90, 7.05, 1.2}));  // a fence
   return mesh;
 }
 
 std::vector<MovingObject> streetTraffic() {
-  return {{placed(carMesh(), 118, 1.6, 0, 180), {-5.2, 0, 0}},         // towards the sensor, past it
-          {placed(carMesh(), 55, 1.5, 0, 180), {-3.0, 0, 0}},          // towards the sensor, slower
-          {placed(vanMesh(), 23, -1.5, 0, 0), {4.9, 0, 0}},            // ahead of the sensor
-          {placed(pedestrianMesh(), 30, 7.4, kKerb, 0), {1.3, 0, 0}},  // along the left sidewalk
-          {placed(pedestrianMesh(), 96, -4.5, 0, 90), {0, 0.45, 0}}};  // across the road
+  return {{placed(carMesh(), 118, 1.6, 0, 180), {-5.2, 0, 0}},               // towards the sensor, past it
+          {placed(carMesh(), 55, 1.5, 0, 180), {-3.0, 0, 0}},                // towards the sensor, slower
+          {placed(vanMesh(), 23, -1.5, 0, 0), {4.9, 0, 0}},                  // ahead of the sensor
+          {placed(pedestrianMesh(), 30, 7.4, kStreetKerb, 0), {1.3, 0, 0}},  // along the left sidewalk
+          {placed(pedestrianMesh(), 96, -4.5, 0, 90), {0, 0.45, 0}}};        // across the road
 }
 
 std::vector<Eigen::Vector2d> streetPath() {

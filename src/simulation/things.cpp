@@ -2,11 +2,13 @@
 // What stands, parks and walks in the built-in worlds.
 #include <cmath>
 
-#include "gaussmap/gaussian/random.h"
-#include "gaussmap/simulation/mesh_shapes.h"
+#include "gaussmap/core/random.h"
+#include "mesh/shapes.h"
 #include "simulation/worlds.h"
 
 namespace gaussmap::simulation {
+using namespace detail;
+
 namespace {
 
 TriangleMesh together(const std::vector<TriangleMesh>& parts) {

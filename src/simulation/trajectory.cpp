@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/simulation/trajectory.h"
+#include "simulation/trajectory.h"
 
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
-#include "gaussmap/io/atomic_file.h"
+#include "io/files/atomic_file.h"
 
 namespace gaussmap {
+using namespace detail;
 
 void writeTum(const std::filesystem::path& path, const std::vector<TimedPose>& trajectory) {
   std::string text = "# time x y z qx qy qz qw\n";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/simulation/world.h"
+#include "simulation/world.h"
 
 #include <stdexcept>
 #include <string>

@@ -4,9 +4,9 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "gaussmap/simulation/world.h"
 #include "simulation/blocks.h"
 #include "simulation/path.h"
+#include "simulation/world.h"
 
 // The built-in worlds: each in its own plan, with the pose that turns the plan into the map.
 namespace gaussmap::simulation {

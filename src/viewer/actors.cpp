@@ -15,9 +15,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gaussmap/simulation/mesh_shapes.h"
+#include "mesh/shapes.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 vtkSmartPointer<vtkUnsignedCharArray> colourArray(const std::vector<Colour>& colours) {

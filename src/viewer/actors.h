@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "gaussmap/segments/segment_map.h"
-#include "gaussmap/viewer/colouring.h"
-#include "gaussmap/viewer/glyphs.h"
+#include "viewer/colouring.h"
+#include "viewer/glyphs.h"
 
 // Pieces of the picture, all about the origin of the scene.
 namespace gaussmap {
@@ -21,11 +21,11 @@ vtkSmartPointer<vtkPolyData> unitSphere(int facets);
 std::pair<int, int> facetsFor(std::size_t glyphs);
 
 /// All ellipsoids by one call to the graphics card: the sphere once, and its places.
-vtkSmartPointer<vtkActor> ellipsoidActor(const std::vector<Glyph>& glyphs, const std::vector<Colour>& colours,
+vtkSmartPointer<vtkActor> ellipsoidActor(const std::vector<Glyph>& glyphs, const std::vector<detail::Colour>& colours,
                                          vtkPolyData* sphere);
 
 /// Their centres as coloured points, of many an even choice: what a machine without a graphics card can turn.
-vtkSmartPointer<vtkActor> centreActor(const std::vector<Glyph>& glyphs, const std::vector<Colour>& colours);
+vtkSmartPointer<vtkActor> centreActor(const std::vector<Glyph>& glyphs, const std::vector<detail::Colour>& colours);
 
 struct Cube {
   Vector<3> centre;

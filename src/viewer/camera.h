@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "gaussmap/viewer/viewer.h"
+#include "viewer/viewer.h"
 
 namespace gaussmap {
 

@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/viewer/colouring.h"
+#include "viewer/colouring.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <sstream>
 
-#include "gaussmap/evaluation/error_cloud.h"
-#include "gaussmap/gaussian/ellipsoid_pose.h"
+#include "core/ellipsoid_pose.h"
+#include "evaluation/error_cloud.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 constexpr Colour kGrey = {150, 150, 150};
-constexpr int kSteps = 256;
+constexpr int kBarSteps = 256;
 /// Okabe and Ito 2008: told apart by everybody.
 constexpr Colour kScales[] = {{86, 180, 233},  {230, 159, 0}, {0, 158, 115},
                               {204, 121, 167}, {0, 114, 178}, {213, 94, 0}};
@@ -33,7 +35,7 @@ Colouring continuous(std::string title, const std::vector<double>& values, doubl
   colouring.title = std::move(title);
   colouring.low = low;
   colouring.high = high;
-  for (int i = 0; i < kSteps; ++i) colouring.bar.push_back(colour(low + (high - low) * (i + 0.5) / kSteps));
+  for (int i = 0; i < kBarSteps; ++i) colouring.bar.push_back(colour(low + (high - low) * (i + 0.5) / kBarSteps));
   for (const double value : values) colouring.colours.push_back(std::isfinite(value) ? colour(value) : kGrey);
   return colouring;
 }

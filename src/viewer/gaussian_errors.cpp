@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <limits>
 
-#include "gaussmap/evaluation/nearest_distances.h"
-#include "gaussmap/evaluation/sample_map.h"
-#include "gaussmap/viewer/colouring.h"
+#include "gaussmap/map/sampling.h"
+#include "points/nearest_distances.h"
+#include "viewer/colouring.h"
 
 namespace gaussmap {
+using namespace detail;
 
 std::vector<double> gaussianErrors(const GaussianMap<3>& map, int scale, const std::vector<Vector<3>>& reference) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/viewer/glyphs.h"
+#include "viewer/glyphs.h"
 
-#include "gaussmap/gaussian/ellipsoid_pose.h"
+#include "core/ellipsoid_pose.h"
 #include "gaussmap/map/extent.h"
-#include "io/map_origin.h"
+#include "map/map_origin.h"
 
 namespace gaussmap {
+using namespace detail;
 
 std::vector<Glyph> ellipsoidGlyphs(const GaussianMap<3>& map, const std::vector<GaussianId>& gaussians, double sigma,
                                    const Vector<3>& origin) {

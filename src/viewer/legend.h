@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "gaussmap/viewer/colouring.h"
+#include "viewer/colouring.h"
 
 namespace gaussmap {
 

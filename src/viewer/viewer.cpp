@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/viewer/viewer.h"
+#include "viewer/viewer.h"
 
 #include <vtkImageData.h>
 #include <vtkPNGWriter.h>
@@ -8,12 +8,14 @@
 
 #include <stdexcept>
 
-#include "gaussmap/io/atomic_file.h"
 #include "gaussmap/map/extent.h"
+#include "io/files/atomic_file.h"
 #include "viewer/off_screen_window.h"
 #include "viewer/viewer_parts.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 /// The middle of a map, so that floats lose nothing.

@@ -11,11 +11,13 @@
 #include <stdexcept>
 
 #include "gaussmap/map/extent.h"
-#include "io/map_origin.h"
+#include "map/map_origin.h"
 #include "viewer/camera.h"
 #include "viewer/legend.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 constexpr std::size_t kMostSmooth = 200000;  // Gaussians

@@ -8,8 +8,8 @@
 #include <map>
 #include <vector>
 
-#include "gaussmap/viewer/viewer.h"
 #include "viewer/actors.h"
+#include "viewer/viewer.h"
 
 namespace gaussmap {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "apps/run_app.h"
-#include "io/temporary_directory.h"
+#include "io/files/temporary_directory.h"
 
 namespace gaussmap::test {
 

@@ -3,8 +3,8 @@
 #include <limits>
 
 #include "apps/app_fixture.h"
-#include "gaussmap/io/map_file.h"
-#include "gaussmap/io/pcd_writer.h"
+#include "gaussmap/io/gmap/map_file.h"
+#include "gaussmap/io/pcd/pcd_writer.h"
 #include "gaussmap/mapping/build.h"
 
 namespace gaussmap::test {

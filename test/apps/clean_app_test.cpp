@@ -5,9 +5,11 @@
 
 #include "apps/app_fixture.h"
 #include "apps/passing_post.h"
-#include "gaussmap/io/pcd_records.h"
+#include "io/pcd/pcd_records.h"
 
 namespace gaussmap::test {
+using namespace detail;
+
 namespace {
 
 class CleanApp : public AppTest {

@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "apps/app_fixture.h"
-#include "gaussmap/io/pcd_reader.h"
-#include "gaussmap/io/pcd_writer.h"
+#include "gaussmap/io/pcd/pcd_reader.h"
+#include "gaussmap/io/pcd/pcd_writer.h"
 
 namespace gaussmap::test {
 namespace {

@@ -4,7 +4,7 @@
 #include <regex>
 
 #include "apps/app_fixture.h"
-#include "gaussmap/io/map_file.h"
+#include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/mapping/build.h"
 
 namespace gaussmap::test {

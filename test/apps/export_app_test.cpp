@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // gaussmap export: one file of every kind, and the combinations that make no sense.
 #include "apps/app_fixture.h"
-#include "gaussmap/io/map_file.h"
-#include "gaussmap/io/ply.h"
-#include "io/ply_vertices.h"
+#include "gaussmap/io/gmap/map_file.h"
+#include "gaussmap/io/ply/ply.h"
+#include "io/ply/ply_vertices.h"
 
 namespace gaussmap::test {
 namespace {

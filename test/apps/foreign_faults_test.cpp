@@ -7,9 +7,9 @@
 #include <regex>
 
 #include "apps/app_fixture.h"
-#include "gaussmap/io/map_file.h"
+#include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/mapping/build.h"
-#include "io/map_equality.h"
+#include "io/gmap/map_equality.h"
 
 namespace gaussmap::test {
 namespace {

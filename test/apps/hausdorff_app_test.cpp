@@ -9,20 +9,22 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/run_app.h"
-#include "evaluation/point_clouds.h"
-#include "gaussmap/evaluation/error_cloud.h"
+#include "evaluation/error_cloud.h"
 #include "gaussmap/evaluation/hausdorff.h"
 #include "gaussmap/evaluation/held_out.h"
-#include "gaussmap/evaluation/mesh_distance.h"
-#include "gaussmap/io/map_file.h"
-#include "gaussmap/io/map_pcd.h"
-#include "gaussmap/io/pcd_reader.h"
-#include "gaussmap/io/pcd_writer.h"
-#include "gaussmap/io/ply.h"
+#include "gaussmap/io/gmap/map_file.h"
+#include "gaussmap/io/pcd/map_pcd.h"
+#include "gaussmap/io/pcd/pcd_reader.h"
+#include "gaussmap/io/pcd/pcd_writer.h"
+#include "gaussmap/io/ply/ply.h"
 #include "gaussmap/mapping/build.h"
-#include "io/temporary_directory.h"
+#include "io/files/temporary_directory.h"
+#include "mesh/mesh_distance.h"
+#include "points/point_clouds.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -4,8 +4,8 @@
 
 #include "apps/app_fixture.h"
 #include "apps/traced_app.h"
-#include "gaussmap/io/map_file.h"
-#include "io/map_equality.h"
+#include "gaussmap/io/gmap/map_file.h"
+#include "io/gmap/map_equality.h"
 
 namespace gaussmap::test {
 namespace {

@@ -4,12 +4,12 @@
 #include <sstream>
 
 #include "apps/app_fixture.h"
-#include "gaussmap/io/map_file.h"
-#include "gaussmap/io/pcd_reader.h"
-#include "gaussmap/io/pcd_writer.h"
-#include "gaussmap/io/scan_list.h"
+#include "gaussmap/io/gmap/map_file.h"
+#include "gaussmap/io/pcd/pcd_reader.h"
+#include "gaussmap/io/pcd/pcd_writer.h"
+#include "gaussmap/io/scans/scan_list.h"
 #include "gaussmap/mapping/accumulate_scans.h"
-#include "io/map_equality.h"
+#include "io/gmap/map_equality.h"
 
 namespace gaussmap::test {
 namespace {

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "apps/app_fixture.h"
-#include "gaussmap/io/map_file.h"
-#include "io/map_equality.h"
+#include "gaussmap/io/gmap/map_file.h"
+#include "io/gmap/map_equality.h"
 
 namespace gaussmap::test {
 namespace {

@@ -5,10 +5,12 @@
 
 #include "apps/app_fixture.h"
 #include "apps/passing_post.h"
-#include "gaussmap/io/map_file.h"
-#include "gaussmap/io/removed_pcd.h"
+#include "gaussmap/io/gmap/map_file.h"
+#include "io/pcd/removed_pcd.h"
 
 namespace gaussmap::test {
+using namespace detail;
+
 namespace {
 
 class OnlineApp : public AppTest {

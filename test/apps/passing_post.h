@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <string>
 
-#include "io/pcd_bytes.h"
-#include "io/temporary_directory.h"
+#include "io/files/temporary_directory.h"
+#include "io/pcd/pcd_bytes.h"
 
 namespace gaussmap::test {
 

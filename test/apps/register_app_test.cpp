@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "apps/app_fixture.h"
-#include "gaussmap/io/pose_file.h"
+#include "gaussmap/io/scans/pose_file.h"
 
 namespace gaussmap::test {
 namespace {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "io/file_contents.h"
+#include "io/files/file_contents.h"
 
 namespace gaussmap::test {
 

@@ -4,9 +4,9 @@
 #include <sstream>
 
 #include "apps/app_fixture.h"
-#include "gaussmap/io/pcd_writer.h"
-#include "gaussmap/io/segment_files.h"
-#include "io/gzip.h"
+#include "gaussmap/io/export/segment_files.h"
+#include "gaussmap/io/pcd/pcd_writer.h"
+#include "io/logs/gzip.h"
 
 namespace gaussmap::test {
 namespace {

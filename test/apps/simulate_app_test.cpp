@@ -4,13 +4,15 @@
 #include <numeric>
 
 #include "apps/app_fixture.h"
-#include "gaussmap/evaluation/mesh_distance.h"
-#include "gaussmap/io/pcd_reader.h"
-#include "gaussmap/io/ply.h"
-#include "gaussmap/io/pose_file.h"
-#include "gaussmap/io/scan_list.h"
+#include "gaussmap/io/pcd/pcd_reader.h"
+#include "gaussmap/io/ply/ply.h"
+#include "gaussmap/io/scans/pose_file.h"
+#include "gaussmap/io/scans/scan_list.h"
+#include "mesh/mesh_distance.h"
 
 namespace gaussmap::test {
+using namespace detail;
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // gaussmap pcd2map --update through the real program.
 #include "apps/app_fixture.h"
-#include "gaussmap/io/map_file.h"
-#include "io/map_equality.h"
+#include "gaussmap/io/gmap/map_file.h"
+#include "io/gmap/map_equality.h"
 
 namespace gaussmap::test {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Help, and wrong usage: exit code 2.
 #include "apps/app_fixture.h"
-#include "gaussmap/io/map_file.h"
-#include "gaussmap/io/map_pcd.h"
+#include "gaussmap/io/gmap/map_file.h"
+#include "gaussmap/io/pcd/map_pcd.h"
 
 namespace gaussmap::test {
 namespace {

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <random>
 
-#include "gaussmap/io/pcd_reader.h"
-#include "gaussmap/io/scan_list.h"
+#include "gaussmap/io/pcd/pcd_reader.h"
+#include "gaussmap/io/scans/scan_list.h"
 #include "gaussmap/mapping/accumulate_scans.h"
 #include "parts.h"
 #include "street_scene.h"

@@ -8,8 +8,8 @@
 #include <iostream>
 #include <vector>
 
-#include "gaussmap/gaussian/random.h"
-#include "gaussmap/io/map_reader.h"
+#include "gaussmap/core/random.h"
+#include "gaussmap/io/gmap/map_reader.h"
 
 namespace {
 

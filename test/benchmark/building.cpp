@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <unordered_map>
 
-#include "gaussmap/map/count_points.h"
+#include "gaussmap/map/moment_grid.h"
 #include "gaussmap/mapping/build.h"
 #include "measure.h"
 #include "parts.h"

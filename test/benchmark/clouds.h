@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "gaussmap/io/scan_list.h"
-#include "gaussmap/simulation/simulation.h"
+#include "gaussmap/io/scans/scan_list.h"
+#include "simulation/simulation.h"
 
 namespace gaussmap::benchmark {
 

@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "gaussmap/io/pcd_writer.h"
+#include "gaussmap/io/pcd/pcd_writer.h"
 #include "measure.h"
 #include "parts.h"
 #include "street_scene.h"

@@ -15,10 +15,12 @@
 #include <numeric>
 
 #include "clouds.h"
-#include "gaussmap/evaluation/nearest_distances.h"
 #include "gaussmap/pcl/gaussian_map_filter.h"
+#include "points/nearest_distances.h"
 
 namespace gaussmap::benchmark {
+using namespace detail;
+
 namespace {
 
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;

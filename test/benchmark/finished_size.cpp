@@ -12,21 +12,22 @@
 #include <iostream>
 #include <numeric>
 
-#include "gaussmap/evaluation/mesh_distance.h"
-#include "gaussmap/evaluation/sample_map.h"
-#include "gaussmap/gaussian/random.h"
-#include "gaussmap/io/map_file.h"
-#include "gaussmap/io/pcd_reader.h"
-#include "gaussmap/io/ply.h"
-#include "gaussmap/io/scan_list.h"
+#include "gaussmap/core/random.h"
+#include "gaussmap/io/gmap/map_file.h"
+#include "gaussmap/io/pcd/pcd_reader.h"
+#include "gaussmap/io/ply/ply.h"
+#include "gaussmap/io/scans/scan_list.h"
+#include "gaussmap/map/sampling.h"
 #include "gaussmap/mapping/build.h"
 #include "gaussmap/mapping/refine.h"
 #include "gaussmap/mapping/scan.h"
-#include "gaussmap/occupancy/projection.h"
+#include "gaussmap/sensor/projection.h"
+#include "mesh/mesh_distance.h"
 
 namespace {
 
 using namespace gaussmap;
+using namespace gaussmap::detail;
 namespace fs = std::filesystem;
 
 constexpr std::size_t kSamples = 100000;

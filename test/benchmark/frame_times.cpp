@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "gaussmap/io/map_file.h"
-#include "gaussmap/viewer/glyphs.h"
+#include "gaussmap/io/gmap/map_file.h"
+#include "viewer/glyphs.h"
 #include "viewer/off_screen_window.h"
 #include "viewer/viewer_parts.h"
 

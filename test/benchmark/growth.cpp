@@ -2,8 +2,8 @@
 #include <Eigen/QR>
 #include <cstdio>
 
-#include "gaussmap/gaussian/random.h"
-#include "gaussmap/map/count_points.h"
+#include "gaussmap/core/random.h"
+#include "gaussmap/map/moment_grid.h"
 #include "gaussmap/mapping/build.h"
 #include "measure.h"
 #include "parts.h"

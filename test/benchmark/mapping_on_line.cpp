@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <octomap/octomap.h>
 
-#include "gaussmap/io/pcd_reader.h"
-#include "gaussmap/io/scan_list.h"
+#include "gaussmap/io/pcd/pcd_reader.h"
+#include "gaussmap/io/scans/scan_list.h"
+#include "gaussmap/mapping/online/online_mapper.h"
 #include "gaussmap/mapping/scan.h"
-#include "gaussmap/online/online_mapper.h"
-#include "gaussmap/simulation/simulation.h"
 #include "measure.h"
 #include "parts.h"
+#include "simulation/simulation.h"
 
 namespace gaussmap::benchmark {
 namespace {

@@ -11,15 +11,16 @@
 #include <iostream>
 #include <set>
 
-#include "gaussmap/evaluation/removal_score.h"
-#include "gaussmap/io/pcd_reader.h"
-#include "gaussmap/io/scan_list.h"
-#include "gaussmap/mapping/moving_points.h"
-#include "gaussmap/online/online_mapper.h"
+#include "evaluation/removal_score.h"
+#include "gaussmap/io/pcd/pcd_reader.h"
+#include "gaussmap/io/scans/scan_list.h"
+#include "gaussmap/mapping/moving/moving_points.h"
+#include "gaussmap/mapping/online/online_mapper.h"
 
 namespace {
 
 using namespace gaussmap;
+using namespace gaussmap::detail;
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();

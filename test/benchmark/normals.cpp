@@ -12,11 +12,13 @@
 #include <iostream>
 
 #include "clouds.h"
-#include "gaussmap/evaluation/mesh_tree.h"
 #include "gaussmap/pcl/normal_estimation.h"
+#include "mesh/mesh_tree.h"
 #include "table.h"
 
 namespace gaussmap::benchmark {
+using namespace detail;
+
 namespace {
 
 using Normals = pcl::PointCloud<pcl::Normal>;

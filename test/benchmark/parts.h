@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "gaussmap/gaussian/gaussian.h"
+#include "gaussmap/core/gaussian.h"
 #include "table.h"
 
 namespace gaussmap::benchmark {

@@ -4,7 +4,7 @@
 #include <array>
 #include <stdexcept>
 
-#include "gaussmap/io/pcd_reader.h"
+#include "gaussmap/io/pcd/pcd_reader.h"
 #include "measure.h"
 #include "parts.h"
 

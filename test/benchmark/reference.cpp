@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <map>
 
-#include "gaussmap/io/map_file.h"
-#include "gaussmap/io/pcd_reader.h"
-#include "gaussmap/io/scan_list.h"
+#include "gaussmap/io/gmap/map_file.h"
+#include "gaussmap/io/pcd/pcd_reader.h"
+#include "gaussmap/io/scans/scan_list.h"
 #include "gaussmap/mapping/accumulate_scans.h"
 
 using namespace gaussmap;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "refinement_data.h"
 
-#include "gaussmap/evaluation/nearest_distances.h"
-#include "gaussmap/io/pcd_reader.h"
+#include "gaussmap/io/pcd/pcd_reader.h"
 #include "gaussmap/mapping/accumulate_scans.h"
+#include "points/nearest_distances.h"
 
 namespace gaussmap::refinement {
+using namespace detail;
+
 namespace {
 
 constexpr double kSpacing = 0.02;  // of the points on the truth [m]: a fifth of a finest cell

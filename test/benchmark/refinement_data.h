@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "gaussmap/evaluation/triangle_mesh.h"
 #include "gaussmap/map/grid.h"
-#include "gaussmap/simulation/simulation.h"
+#include "gaussmap/mesh/triangle_mesh.h"
+#include "simulation/simulation.h"
 
 namespace gaussmap::refinement {
 

@@ -11,14 +11,16 @@
 #include <stdexcept>
 
 #include "gaussmap/mapping/build.h"
-#include "gaussmap/mapping/coarsen.h"
 #include "gaussmap/mapping/refine.h"
+#include "map/coarsen.h"
 #include "mapping/blur.h"
 #include "refinement_data.h"
 #include "scalar_agglomerate.h"
 #include "table.h"
 
 namespace gaussmap::refinement {
+using namespace detail;
+
 namespace {
 
 constexpr double kFinest = 250000.0;  // Gaussians under the middle scale

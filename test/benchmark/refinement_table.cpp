@@ -9,13 +9,15 @@
 #include <optional>
 #include <stdexcept>
 
-#include "gaussmap/evaluation/mesh_distance.h"
 #include "gaussmap/mapping/build.h"
 #include "gaussmap/mapping/refine.h"
+#include "mesh/mesh_distance.h"
 #include "refinement_report.h"
 #include "uniform_grid.h"
 
 namespace gaussmap::refinement {
+using namespace detail;
+
 namespace {
 
 /// The truth of one seed, ready to measure maps.

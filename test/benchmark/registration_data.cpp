@@ -4,11 +4,11 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "gaussmap/gaussian/random.h"
-#include "gaussmap/io/pcd_reader.h"
-#include "gaussmap/io/scan_list.h"
+#include "gaussmap/core/random.h"
+#include "gaussmap/io/pcd/pcd_reader.h"
+#include "gaussmap/io/scans/scan_list.h"
 #include "gaussmap/mapping/scan.h"
-#include "gaussmap/simulation/simulation.h"
+#include "simulation/simulation.h"
 
 namespace gaussmap::benchmark {
 namespace {

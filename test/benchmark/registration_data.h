@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "gaussmap/io/pose.h"
+#include "gaussmap/core/pose.h"
 
 namespace gaussmap::benchmark {
 

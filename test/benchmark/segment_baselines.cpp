@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "gaussmap/gaussian/random.h"
+#include "gaussmap/core/random.h"
 
 namespace gaussmap::benchmark {
 namespace {

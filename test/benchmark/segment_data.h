@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "gaussmap/gaussian/random.h"
-#include "gaussmap/io/carmen_log.h"
-#include "gaussmap/io/planar_scan.h"
+#include "gaussmap/core/random.h"
+#include "gaussmap/io/logs/carmen_log.h"
+#include "gaussmap/segments/planar_scan.h"
 #include "gaussmap/segments/segment.h"
-#include "gaussmap/simulation/simulation.h"
+#include "simulation/simulation.h"
 
 namespace gaussmap::benchmark {
 

@@ -9,14 +9,16 @@
 #include <functional>
 #include <iostream>
 
-#include "gaussmap/evaluation/segment_score.h"
-#include "gaussmap/evaluation/wall_score.h"
+#include "evaluation/segment_score.h"
+#include "evaluation/wall_score.h"
 #include "gaussmap/segments/segment_fitter.h"
 #include "segment_baselines.h"
 #include "segment_data.h"
 #include "table.h"
 
 namespace gaussmap::benchmark {
+using namespace detail;
+
 namespace {
 
 constexpr std::size_t kMostSegments = 500;

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "gaussmap/gaussian/gaussian.h"
-#include "gaussmap/io/pose.h"
-#include "gaussmap/simulation/lidar.h"
-#include "gaussmap/simulation/scene.h"
+#include "gaussmap/core/gaussian.h"
+#include "gaussmap/core/pose.h"
+#include "simulation/lidar.h"
+#include "simulation/scene.h"
 
 namespace gaussmap::benchmark_input {
 

@@ -6,8 +6,8 @@
 #include <iostream>
 #include <string>
 
-#include "gaussmap/gaussian/random.h"
-#include "gaussmap/io/pcd_writer.h"
+#include "gaussmap/core/random.h"
+#include "gaussmap/io/pcd/pcd_writer.h"
 #include "street_scene.h"
 
 int main(int argc, char** argv) {

@@ -10,6 +10,8 @@
 #include "clustering/random_gaussians.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 Gaussian<3> sphere(double x, double sigma, double weight = 1.0) {

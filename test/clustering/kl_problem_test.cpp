@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include "clustering/random_gaussians.h"
-#include "gaussmap/gaussian/random.h"
+#include "gaussmap/core/random.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 /// Changes some references: replaces, repeats another (ties), adds, removes.

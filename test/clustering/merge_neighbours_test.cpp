@@ -12,6 +12,8 @@
 #include "clustering/random_gaussians.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 using Pairs = std::set<std::pair<std::size_t, std::size_t>>;  // first < second

@@ -9,6 +9,8 @@
 #include "clustering/random_gaussians.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 template <int D>

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "editing/thinned_map.h"
 #include "gaussmap/evaluation/hausdorff.h"
 #include "gaussmap/evaluation/held_out.h"
 #include "gaussmap/map/leaves.h"
@@ -12,9 +13,10 @@
 #include "gaussmap/mapping/build.h"
 #include "gaussmap/mapping/refine.h"
 #include "map/random_clouds.h"
-#include "mapping/thinned_map.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 using test::randomCloud;

@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/evaluation/error_cloud.h"
+#include "evaluation/error_cloud.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstring>
 
-#include "gaussmap/io/error.h"
-#include "gaussmap/io/pcd_reader.h"
-#include "io/temporary_directory.h"
+#include "gaussmap/core/error.h"
+#include "gaussmap/io/pcd/pcd_reader.h"
+#include "io/files/temporary_directory.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 const std::uint32_t kBlue = 0x0000FF, kCyan = 0x00FFFF, kGreen = 0x00FF00, kYellow = 0xFFFF00, kRed = 0xFF0000;

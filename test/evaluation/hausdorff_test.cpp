@@ -9,11 +9,13 @@
 #include <limits>
 #include <string>
 
-#include "gaussmap/evaluation/nearest_distances.h"
-#include "gaussmap/gaussian/random.h"
+#include "gaussmap/core/random.h"
 #include "gaussmap/mapping/build.h"
+#include "points/nearest_distances.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 using Points = std::vector<Vector<3>>;

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "gaussmap/gaussian/random.h"
+#include "gaussmap/core/random.h"
 #include "gaussmap/map/queries.h"
 #include "gaussmap/mapping/build.h"
 

@@ -2,12 +2,14 @@
 // Comparing with a mesh, with another map, and the single distances behind the numbers.
 #include <gtest/gtest.h>
 
-#include "evaluation/point_clouds.h"
 #include "gaussmap/evaluation/hausdorff.h"
-#include "gaussmap/evaluation/mesh_distance.h"
 #include "gaussmap/mapping/build.h"
+#include "mesh/mesh_distance.h"
+#include "points/point_clouds.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 using test::allPairs;

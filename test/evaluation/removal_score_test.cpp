@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/evaluation/removal_score.h"
+#include "evaluation/removal_score.h"
 
 #include <gtest/gtest.h>
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 TEST(RemovalScoreTest, CountsWhatWasKeptAndWhatWasRemoved) {

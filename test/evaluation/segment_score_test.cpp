@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/evaluation/segment_score.h"
+#include "evaluation/segment_score.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "gaussmap/gaussian/random.h"
+#include "gaussmap/core/random.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/evaluation/wall_score.h"
+#include "evaluation/wall_score.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,11 @@
 #include <cmath>
 #include <limits>
 
-#include "gaussmap/gaussian/random.h"
+#include "gaussmap/core/random.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 Segment line(double x0, double y0, double x1, double y1) {

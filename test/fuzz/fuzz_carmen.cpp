@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // CARMEN logs, plain and gzip.
 #include "fuzz_file.h"
-#include "gaussmap/io/carmen_log.h"
+#include "gaussmap/io/logs/carmen_log.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace gaussmap;

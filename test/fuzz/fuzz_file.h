@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "gaussmap/io/error.h"
+#include "gaussmap/core/error.h"
 
 namespace gaussmap::fuzz {
 

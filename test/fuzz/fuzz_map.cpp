@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Map files: loading whole, by tiles, metadata, sizes.
 #include "fuzz_file.h"
-#include "gaussmap/io/map_file.h"
-#include "gaussmap/io/map_reader.h"
+#include "gaussmap/io/gmap/map_file.h"
+#include "gaussmap/io/gmap/map_reader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace gaussmap;

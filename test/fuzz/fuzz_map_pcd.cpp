@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Maps as PCD files of Gaussians, and maps of line segments.
 #include "fuzz_file.h"
-#include "gaussmap/io/map_pcd.h"
-#include "gaussmap/io/segment_files.h"
+#include "gaussmap/io/export/segment_files.h"
+#include "gaussmap/io/pcd/map_pcd.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace gaussmap;

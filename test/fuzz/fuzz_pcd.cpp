@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // PCD files: the coordinates, every column, whole records, the fingerprint.
 #include "fuzz_file.h"
-#include "gaussmap/io/pcd_reader.h"
+#include "gaussmap/io/pcd/pcd_reader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace gaussmap;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Pose files (TUM, KITTI), and their poses for scans.
 #include "fuzz_file.h"
-#include "gaussmap/io/pose_file.h"
+#include "gaussmap/io/scans/pose_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace gaussmap;

@@ -7,11 +7,12 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "io/tile_codec.h"
+#include "io/gmap/tile_codec.h"
 
 namespace {
 
 using namespace gaussmap;
+using namespace gaussmap::detail;
 
 const MapOptions kOptions{0.1, 10, 3, 0.01};  // of the seeds
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The index of a directory of PCD tiles, as Autoware writes it.
 #include "fuzz_file.h"
-#include "gaussmap/io/map_tiles.h"
+#include "gaussmap/io/export/map_tiles.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace gaussmap;

@@ -6,6 +6,8 @@
 #include <vector>
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 TEST(AddRuns, EqualsThePlainLoopForExtremeAndRandomOffsetsAndSharedCells) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/map/count_points.h"
+#include "gaussmap/map/moment_grid.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "gaussmap/gaussian/random.h"
+#include "gaussmap/core/random.h"
 
 namespace gaussmap {
 namespace {

@@ -5,16 +5,16 @@
 #include <cmath>
 #include <filesystem>
 
-#include "gaussmap/io/map_file.h"
-#include "gaussmap/io/pcd_writer.h"
+#include "gaussmap/io/gmap/map_file.h"
+#include "gaussmap/io/pcd/pcd_writer.h"
 #include "gaussmap/mapping/accumulate_scans.h"
 #include "gaussmap/mapping/build.h"
+#include "gaussmap/mapping/online/online_mapper.h"
 #include "gaussmap/mapping/refine.h"
-#include "gaussmap/online/online_mapper.h"
-#include "io/map_equality.h"
-#include "io/temporary_directory.h"
+#include "io/files/temporary_directory.h"
+#include "io/gmap/map_equality.h"
 #include "map/random_clouds.h"
-#include "online/online_scenes.h"
+#include "mapping/online/online_scenes.h"
 
 namespace gaussmap::test {
 namespace {

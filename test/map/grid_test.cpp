@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "gaussmap/gaussian/random.h"
+#include "gaussmap/core/random.h"
 
 namespace gaussmap {
 namespace {

@@ -5,12 +5,14 @@
 
 #include <stdexcept>
 
+#include "editing/thin_map.h"
 #include "gaussmap/map/extent.h"
 #include "gaussmap/mapping/build.h"
 #include "map/random_clouds.h"
-#include "mapping/thin_map.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 /// Three points in two cells of 1 m; of the cells of 0.1 m under the second one nothing is left.

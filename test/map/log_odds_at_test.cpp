@@ -6,10 +6,12 @@
 #include <limits>
 #include <vector>
 
-#include "gaussmap/map/occupancy.h"
 #include "gaussmap/mapping/build.h"
+#include "map/inherit_occupancy.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 /// Points in cells 0, 3 and 20 along x.

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/map/member_boxes.h"
+#include "map/member_boxes.h"
 
 #include <gtest/gtest.h>
 
+#include "gaussmap/editing/compress.h"
 #include "gaussmap/mapping/build.h"
-#include "gaussmap/mapping/compress.h"
 #include "gaussmap/mapping/refine.h"
 #include "map/random_clouds.h"
 #include "mapping/room.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 TEST(MemberBoxes, OfTwoCellsIsTheBoxAroundBoth) {

@@ -8,9 +8,9 @@
 #include <map>
 #include <stdexcept>
 
-#include "gaussmap/io/error.h"
-#include "gaussmap/io/pcd_writer.h"
-#include "io/temporary_directory.h"
+#include "gaussmap/core/error.h"
+#include "gaussmap/io/pcd/pcd_writer.h"
+#include "io/files/temporary_directory.h"
 #include "map/random_clouds.h"
 
 namespace gaussmap {

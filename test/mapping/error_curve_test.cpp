@@ -4,15 +4,17 @@
 #include <gtest/gtest.h>
 
 #include "gaussmap/evaluation/hausdorff.h"
-#include "gaussmap/evaluation/nearest_distances.h"
-#include "gaussmap/evaluation/sample_map.h"
-#include "gaussmap/io/map_file.h"
+#include "gaussmap/io/gmap/map_file.h"
+#include "gaussmap/map/sampling.h"
 #include "gaussmap/mapping/build.h"
-#include "io/temporary_directory.h"
+#include "io/files/temporary_directory.h"
 #include "map/random_clouds.h"
 #include "mapping/room.h"
+#include "points/nearest_distances.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 GaussianMapOctree cloudMap(std::uint64_t seed) {

@@ -2,11 +2,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clustering/undo_merges.h"
 #include "gaussmap/clustering/agglomerate.h"
 #include "mapping/refine_helpers.h"
-#include "mapping/undo_merges.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 /// Occupied finest cells under every Gaussian of scale s, counted one by one through the links.

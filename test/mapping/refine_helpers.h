@@ -6,12 +6,13 @@
 #include <vector>
 
 #include "gaussmap/mapping/build.h"
-#include "gaussmap/mapping/cell_error.h"
-#include "gaussmap/mapping/coarsen.h"
 #include "gaussmap/mapping/refine.h"
+#include "map/coarsen.h"
+#include "mapping/cell_error.h"
 #include "mapping/room.h"
 
 namespace gaussmap {
+using namespace detail;
 
 inline constexpr RefineMethod kMethods[] = {RefineMethod::Agglomerate, RefineMethod::Insert};
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "gaussmap/gaussian/gaussian.h"
+#include "gaussmap/core/gaussian.h"
 
 namespace gaussmap {
 

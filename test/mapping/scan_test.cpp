@@ -5,11 +5,11 @@
 
 #include <limits>
 
-#include "gaussmap/gaussian/random.h"
-#include "gaussmap/io/error.h"
-#include "gaussmap/io/pcd_writer.h"
-#include "gaussmap/occupancy/projection.h"
-#include "io/temporary_directory.h"
+#include "gaussmap/core/error.h"
+#include "gaussmap/core/random.h"
+#include "gaussmap/io/pcd/pcd_writer.h"
+#include "gaussmap/sensor/projection.h"
+#include "io/files/temporary_directory.h"
 #include "map/random_clouds.h"
 
 namespace gaussmap {

@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <vector>
 
-#include <gaussmap/io/map_file.h>
+#include <gaussmap/io/gmap/map_file.h>
 #include <gaussmap/mapping/build.h>
 #include <gaussmap/mapping/refine.h>
 #ifdef WITH_PCL

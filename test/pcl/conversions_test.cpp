@@ -6,9 +6,9 @@
 #include <pcl/io/pcd_io.h>
 #include <pcl/filters/impl/passthrough.hpp>
 
-#include "gaussmap/io/map_pcd.h"
+#include "gaussmap/io/pcd/map_pcd.h"
 #include "gaussmap/mapping/refine.h"
-#include "io/temporary_directory.h"
+#include "io/files/temporary_directory.h"
 #include "map/random_clouds.h"
 
 #pragma GCC diagnostic push

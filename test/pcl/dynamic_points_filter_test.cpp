@@ -7,11 +7,13 @@
 
 #include <cmath>
 
-#include "gaussmap/map/occupancy.h"
 #include "gaussmap/pcl/conversions.h"
+#include "map/inherit_occupancy.h"
 #include "pcl/random_surface.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 using test::makeNan;

@@ -9,10 +9,12 @@
 #include <cmath>
 #include <numeric>
 
-#include "gaussmap/evaluation/nearest_distances.h"
 #include "pcl/random_surface.h"
+#include "points/nearest_distances.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 using test::makeNan;

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <limits>
 
-#include "gaussmap/gaussian/random.h"
-#include "gaussmap/io/pcd_reader.h"
-#include "io/temporary_directory.h"
+#include "gaussmap/core/random.h"
+#include "gaussmap/io/pcd/pcd_reader.h"
+#include "io/files/temporary_directory.h"
 
 // The reader beside PCL's own, on files that PCL wrote.
 namespace gaussmap {

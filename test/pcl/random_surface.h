@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "gaussmap/gaussian/random.h"
+#include "gaussmap/core/random.h"
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpedantic"

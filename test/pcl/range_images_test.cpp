@@ -6,8 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "gaussmap/occupancy/sight.h"
-#include "gaussmap/simulation/lidar.h"
+#include "gaussmap/sensor/sight.h"
+#include "simulation/lidar.h"
 
 namespace gaussmap {
 namespace {

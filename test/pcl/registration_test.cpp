@@ -15,10 +15,10 @@
 #include <string>
 #include <vector>
 
-#include "gaussmap/io/map_file.h"
-#include "gaussmap/simulation/simulation.h"
-#include "io/temporary_directory.h"
+#include "gaussmap/io/gmap/map_file.h"
+#include "io/files/temporary_directory.h"
 #include "pcl/scan_cloud.h"
+#include "simulation/simulation.h"
 
 namespace gaussmap {
 namespace {

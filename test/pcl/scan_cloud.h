@@ -3,7 +3,7 @@
 
 #include <pcl/point_cloud.h>
 
-#include "gaussmap/simulation/simulation.h"
+#include "simulation/simulation.h"
 
 namespace gaussmap {
 

@@ -6,6 +6,8 @@
 #include <cmath>
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 constexpr DescentLimits kLimits{50, 1e-8, 1e-8};

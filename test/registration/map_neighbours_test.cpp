@@ -6,11 +6,13 @@
 #include <cmath>
 #include <limits>
 
-#include "gaussmap/gaussian/random.h"
+#include "gaussmap/core/random.h"
+#include "gaussmap/editing/compress.h"
 #include "gaussmap/mapping/build.h"
-#include "gaussmap/mapping/compress.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 /// Of every scale of a map with points from 0 to 4 m, and 2 m upwards.

@@ -9,11 +9,11 @@
 #include <limits>
 #include <stdexcept>
 
-#include "gaussmap/gaussian/random.h"
-#include "gaussmap/io/map_file.h"
+#include "gaussmap/core/random.h"
+#include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/mapping/build.h"
 #include "gaussmap/mapping/refine.h"
-#include "gaussmap/simulation/simulation.h"
+#include "simulation/simulation.h"
 
 namespace gaussmap {
 namespace {

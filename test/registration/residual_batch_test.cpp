@@ -7,9 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "gaussmap/gaussian/random.h"
+#include "gaussmap/core/random.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 using Meeting = std::pair<Gaussian<3>, MapGaussian>;

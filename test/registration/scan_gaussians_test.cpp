@@ -6,6 +6,8 @@
 #include "gaussmap/mapping/build.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 TEST(GaussiansOf, AScanAreTakenFromAllOfItWhenItIsLarge) {

@@ -5,10 +5,12 @@
 
 #include <Eigen/Geometry>
 
-#include "gaussmap/gaussian/random.h"
+#include "gaussmap/core/random.h"
 #include "gaussmap/mapping/build.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 using Vector6 = NormalEquations::Vector6;

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 namespace {
 
 CellRow randomRow(Random& random, int points) {
@@ -68,4 +68,4 @@ TEST(CellRow, RaysThroughGoWhereTheirCellGoes) {
 }
 
 }  // namespace
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

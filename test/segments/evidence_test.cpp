@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 namespace {
 
 /// A wall of 4 m is seen whole once, then its right half 50 times. What is left of the left half: the share of its
@@ -16,7 +16,7 @@ struct Memory {
 
 Memory lookAtOneHalf(const SegmentFitterOptions& options) {
   const auto keeper = makeEvidenceKeeper(options);
-  Evidence evidence;
+  SegmentEvidence evidence;
   evidence.row = CellRow({0.0, 0.0}, {1.0, 0.0}, 0.1);
   Random random(1);
   const auto see = [&](double from) {
@@ -36,7 +36,7 @@ Memory lookAtOneHalf(const SegmentFitterOptions& options) {
   }
   Memory memory;
   memory.particles = evidence.particles.size();
-  for (const Cell& cell : evidence.row.cells())
+  for (const SegmentCell& cell : evidence.row.cells())
     if (cell.hits.n > 0.0 && cell.hits.mean().x() < 1.9) {
       memory.weight += cell.hits.n;
       ++memory.cells;
@@ -71,8 +71,8 @@ TEST(EvidenceKeepers, TheParticlesOfASegmentAreBoundedByItsLengthAndMinimumLengt
   EXPECT_EQ(lookAtOneHalf(options).particles, 600u);
 }
 
-TEST(Evidence, SlicesAndSumsKeepAllParticles) {
-  Evidence evidence;
+TEST(SegmentEvidence, SlicesAndSumsKeepAllParticles) {
+  SegmentEvidence evidence;
   evidence.row = CellRow({0.0, 0.0}, {1.0, 0.0}, 0.1);
   Random random(3);
   for (int i = 0; i < 200; ++i) {
@@ -81,8 +81,8 @@ TEST(Evidence, SlicesAndSumsKeepAllParticles) {
     evidence.row.add(evidence.particles.back().cast<double>(), 1.0);
   }
   const std::size_t cells = evidence.row.cells().size();
-  Evidence a = evidence.slice(0, 11);
-  const Evidence b = evidence.slice(11, cells);
+  SegmentEvidence a = evidence.slice(0, 11);
+  const SegmentEvidence b = evidence.slice(11, cells);
   EXPECT_EQ(a.particles.size() + b.particles.size(), 200u);
   EXPECT_DOUBLE_EQ(a.row.total().n, static_cast<double>(a.particles.size()));
   a.absorb(b);
@@ -91,4 +91,4 @@ TEST(Evidence, SlicesAndSumsKeepAllParticles) {
 }
 
 }  // namespace
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

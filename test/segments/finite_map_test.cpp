@@ -7,9 +7,9 @@
 #include <memory>
 #include <vector>
 
-#include "gaussmap/io/planar_scan.h"
+#include "gaussmap/segments/planar_scan.h"
 #include "gaussmap/segments/segment_fitter.h"
-#include "gaussmap/simulation/simulation.h"
+#include "simulation/simulation.h"
 
 namespace gaussmap {
 namespace {

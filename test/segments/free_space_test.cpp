@@ -7,7 +7,7 @@
 
 #include "segments/scan_makers.h"
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 namespace {
 
 LiveSegment liveWall(const Vector<2>& from, const Vector<2>& to) {
@@ -23,7 +23,7 @@ LiveSegment liveWall(const Vector<2>& from, const Vector<2>& to) {
 
 double crossed(const LiveSegment& segment) {
   double sum = 0.0;
-  for (const Cell& cell : segment.evidence.row.cells()) sum += cell.crossed;
+  for (const SegmentCell& cell : segment.evidence.row.cells()) sum += cell.crossed;
   return sum;
 }
 
@@ -91,4 +91,4 @@ TEST(Views, GrowWithThePlacesNotWithTheScans) {
 }
 
 }  // namespace
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

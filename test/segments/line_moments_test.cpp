@@ -5,7 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 namespace {
 
 TEST(LineMoments, TheLineIsTheFirstEigenvectorOfTheCovariance) {
@@ -64,4 +64,4 @@ TEST(LineMoments, TheMeanSquaredDistanceFromALineIsThatOfThePoints) {
 }
 
 }  // namespace
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

@@ -6,7 +6,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 namespace {
 
 /// Scans of the wall y = 0 from y = 2: positions of its beams' ends, and where the sensor stood.
@@ -123,4 +123,4 @@ TEST(LineSpread, TurningTwiceChangesNothingAndShiftingBackNeither) {
 }
 
 }  // namespace
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

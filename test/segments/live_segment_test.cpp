@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 namespace {
 
 LiveSegment segmentThrough(const std::vector<Vector<2>>& points, const Vector<2>& axis) {
@@ -107,4 +107,4 @@ TEST(LiveSegment, LinksAreMutual) {
 }
 
 }  // namespace
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

@@ -4,12 +4,14 @@
 
 #include <cmath>
 
-#include "gaussmap/evaluation/wall_score.h"
-#include "gaussmap/gaussian/random.h"
+#include "evaluation/wall_score.h"
+#include "gaussmap/core/random.h"
 #include "gaussmap/segments/segment_fitter.h"
-#include "gaussmap/simulation/simulation.h"
+#include "simulation/simulation.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 WallScore scorePlan(double pose_noise, double tolerance, std::uint64_t seed) {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "gaussmap/gaussian/random.h"
+#include "gaussmap/core/random.h"
 #include "gaussmap/segments/laser_scan.h"
 #include "gaussmap/segments/segment.h"
 

@@ -8,7 +8,7 @@
 
 #include "segments/scan_makers.h"
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 namespace {
 
 TEST(FindRuns, EndAtMissingBeamsAndJumps) {
@@ -71,4 +71,4 @@ TEST(StraightPieces, AreNotKnownOfAFewBeams) {
 }
 
 }  // namespace
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

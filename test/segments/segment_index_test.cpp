@@ -7,9 +7,9 @@
 #include <cmath>
 #include <set>
 
-#include "gaussmap/gaussian/random.h"
+#include "gaussmap/core/random.h"
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 namespace {
 
 Strip randomStrip(Random& random, double reach) {
@@ -73,4 +73,4 @@ TEST(Strip, ContainsWhatIsBetweenItsEndsAndNearItsMiddleLine) {
 }
 
 }  // namespace
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

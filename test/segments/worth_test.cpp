@@ -3,13 +3,13 @@
 
 #include <gtest/gtest.h>
 
-namespace gaussmap::segments {
+namespace gaussmap::detail {
 namespace {
 
 CellRow randomRow(Random& random, int cells) {
   CellRow row({0.0, 0.0}, {1.0, 0.0}, 0.1);
   for (int i = 0; i < cells; ++i) {
-    Cell& cell = row.at(i);
+    SegmentCell& cell = row.at(i);
     if (random.uniform() < 0.7) cell.hits.add({0.1 * i + 0.05, 0.08 * random.normal()}, 5.0 * random.uniform());
     if (random.uniform() < 0.5) cell.crossed = 10.0 * random.uniform();
   }
@@ -59,7 +59,7 @@ TEST(WorthKeeping, IsAsGoodAsTheBestOfAllSetsOfCells) {
 TEST(WorthKeeping, CutsADoorOutOfAWall) {
   CellRow row({0.0, 0.0}, {1.0, 0.0}, 0.1);
   for (int i = 0; i < 30; ++i) {
-    Cell& cell = row.at(i);
+    SegmentCell& cell = row.at(i);
     const bool door = i >= 10 && i < 19;
     if (!door) cell.hits.add({0.1 * i + 0.05, 0.0}, 20.0);
     if (door) cell.crossed = 100.0;
@@ -84,4 +84,4 @@ TEST(Worth, AnObservationCountsOneOnTheLineAndNothingAtTheTolerance) {
 }
 
 }  // namespace
-}  // namespace gaussmap::segments
+}  // namespace gaussmap::detail

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include "gaussmap/evaluation/mesh_tree.h"
-#include "simulation/mesh_measures.h"
+#include "mesh/mesh_measures.h"
+#include "mesh/mesh_tree.h"
 
 namespace gaussmap::simulation {
+using namespace detail;
+
 namespace {
 
 TEST(Rooms, EncloseTheirAir) {  // two rooms and a lower door between them

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/simulation/scene.h"
+#include "simulation/scene.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "gaussmap/gaussian/gaussian.h"
-#include "gaussmap/simulation/lidar.h"
+#include "gaussmap/core/gaussian.h"
+#include "simulation/lidar.h"
 
 namespace gaussmap {
 namespace {

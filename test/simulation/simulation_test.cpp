@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/simulation/simulation.h"
+#include "simulation/simulation.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "gaussmap/evaluation/mesh_distance.h"
-#include "gaussmap/evaluation/nearest_distances.h"
-#include "gaussmap/simulation/mesh_shapes.h"
+#include "mesh/mesh_distance.h"
+#include "mesh/shapes.h"
+#include "points/nearest_distances.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 class Simulations : public testing::TestWithParam<WorldName> {};

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/simulation/trajectory.h"
+#include "simulation/trajectory.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "gaussmap/io/pose_file.h"
-#include "gaussmap/simulation/simulation.h"
-#include "io/temporary_directory.h"
+#include "gaussmap/io/scans/pose_file.h"
+#include "io/files/temporary_directory.h"
+#include "simulation/simulation.h"
 
 namespace gaussmap {
 namespace {

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/simulation/world.h"
+#include "simulation/world.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "gaussmap/simulation/lidar.h"
-#include "gaussmap/simulation/mesh_shapes.h"
+#include "mesh/shapes.h"
+#include "simulation/lidar.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/viewer/colouring.h"
+#include "viewer/colouring.h"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +10,8 @@
 #include "map/random_clouds.h"
 
 namespace gaussmap::test {
+using namespace detail;
+
 namespace {
 
 /// Two boards at heights 0 and 3 m, of 100 and of 900 points a cell, in cells of 1 and 4 m.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/viewer/glyphs.h"
+#include "viewer/glyphs.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Pictures with known answers, drawn off screen.
-#include "gaussmap/viewer/viewer.h"
+#include "viewer/viewer.h"
 
 #include <gtest/gtest.h>
 #include <vtkDataArray.h>
@@ -15,6 +15,8 @@
 #include "viewer/viewer_parts.h"
 
 namespace gaussmap::test {
+using namespace detail;
+
 namespace {
 
 /// One Gaussian, deviations 3, 1 and 0.5 m, the longest axis turned by `angle` from x to y.

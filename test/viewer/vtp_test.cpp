@@ -9,9 +9,9 @@
 
 #include <cmath>
 
-#include "gaussmap/io/gaussian_table.h"
+#include "gaussmap/io/export/gaussian_table.h"
 #include "gaussmap/mapping/build.h"
-#include "io/temporary_directory.h"
+#include "io/files/temporary_directory.h"
 #include "map/random_clouds.h"
 
 namespace gaussmap::test {

@@ -6,10 +6,10 @@
 #include <memory>
 #include <vector>
 
-#include "gaussmap/evaluation/sample_map.h"
-#include "gaussmap/evaluation/triangle_mesh.h"
-#include "gaussmap/gaussian/gaussian.h"
+#include "gaussmap/core/gaussian.h"
 #include "gaussmap/map/gaussian_map.h"
+#include "gaussmap/map/sampling.h"
+#include "gaussmap/mesh/triangle_mesh.h"
 
 namespace gaussmap {
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "gaussmap/gaussian/cell_moments.h"
-#include "gaussmap/gaussian/gaussian.h"
+#include "gaussmap/core/cell_moments.h"
+#include "gaussmap/core/gaussian.h"
 #include "gaussmap/map/grid.h"
 
 namespace gaussmap {

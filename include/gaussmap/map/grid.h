@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "gaussmap/gaussian/cell_moments.h"
-#include "gaussmap/gaussian/gaussian.h"
+#include "gaussmap/core/cell_moments.h"
+#include "gaussmap/core/gaussian.h"
 
 namespace gaussmap {
 

@@ -7,9 +7,9 @@
 #include <memory>
 #include <vector>
 
-#include "gaussmap/gaussian/cell_moments.h"
+#include "gaussmap/core/cell_moments.h"
+#include "gaussmap/core/point_block.h"
 #include "gaussmap/map/grid.h"
-#include "gaussmap/map/point_block.h"
 
 namespace gaussmap {
 
@@ -102,5 +102,10 @@ class MomentGrid {
   std::vector<std::unique_ptr<Cell[], Free>> chunks_;
   std::unique_ptr<Slot[], Free> slots_;
 };
+
+/// Counts points [map frame] on `threads` threads (0 = all), which never show in the sums: they are exact. Non-finite
+/// points are left out. Throws std::invalid_argument unless the resolution [m] is positive and finite,
+/// std::out_of_range, naming the point, if one is too far for 32-bit cells.
+MomentGrid<3> countPoints(double resolution, const PointsView& points, int threads = 0);
 
 }  // namespace gaussmap

@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "gaussmap/io/pose.h"
+#include "gaussmap/core/pose.h"
 #include "gaussmap/map/moment_grid.h"
 
 namespace gaussmap {

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "gaussmap/io/pose.h"
+#include "gaussmap/core/pose.h"
 #include "gaussmap/mapping/accumulate_scans.h"
 
 namespace gaussmap {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "gaussmap/map/count_points.h"
 #include "gaussmap/map/gaussian_map.h"
+#include "gaussmap/map/moment_grid.h"
 #include "gaussmap/mapping/build.h"
 #include "gaussmap/pcl/point_gaussian.h"
 

@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "gaussmap/io/pose.h"
+#include "gaussmap/core/pose.h"
 #include "gaussmap/map/log_odds_at.h"
 #include "gaussmap/mapping/accumulate_scans.h"
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "gaussmap/clustering/split_points.h"
+#include "gaussmap/points/split_points.h"
 
 namespace gaussmap {
 

@@ -11,7 +11,7 @@
 #include <exception>
 #include <vector>
 
-#include "gaussmap/mapping/point_normals.h"
+#include "gaussmap/points/normals.h"
 
 namespace gaussmap {
 

@@ -3,8 +3,8 @@
 
 #include <pcl/range_image/range_image.h>
 
-#include "gaussmap/io/pose.h"
-#include "gaussmap/occupancy/range_image.h"
+#include "gaussmap/core/pose.h"
+#include "gaussmap/sensor/range_image.h"
 
 namespace gaussmap {
 

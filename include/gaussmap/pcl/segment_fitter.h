@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "gaussmap/io/planar_scan.h"
+#include "gaussmap/segments/planar_scan.h"
 #include "gaussmap/segments/segment_fitter.h"
 
 namespace gaussmap {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "gaussmap/io/pose.h"
+#include "gaussmap/core/pose.h"
 #include "gaussmap/map/gaussian_map.h"
 
 namespace gaussmap {

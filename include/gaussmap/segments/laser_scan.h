@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "gaussmap/gaussian/gaussian.h"
+#include "gaussmap/core/gaussian.h"
 
 namespace gaussmap {
 

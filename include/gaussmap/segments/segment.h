@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "gaussmap/gaussian/gaussian.h"
+#include "gaussmap/core/gaussian.h"
 
 namespace gaussmap {
 

@@ -12,6 +12,9 @@
 #include "gaussmap/segments/utility.h"
 
 namespace gaussmap {
+namespace detail {
+struct SegmentFitterState;
+}
 
 /// What a segment remembers of its observations.
 enum class EvidencePolicy {
@@ -97,10 +100,8 @@ class SegmentFitter {
   /// Bytes held, about.
   std::size_t memoryBytes() const;
 
-  struct State;  ///< internal
-
  private:
-  std::unique_ptr<State> state_;
+  std::unique_ptr<detail::SegmentFitterState> state_;
 };
 
 }  // namespace gaussmap

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "gaussmap/gaussian/gaussian.h"
+#include "gaussmap/core/gaussian.h"
 
 namespace gaussmap {
 

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <exception>
 
-#include "gaussmap/mapping/point_normals.h"
 #include "gaussmap/pcl/impl/field_means.hpp"
+#include "gaussmap/points/normals.h"
 
 namespace gaussmap {
 namespace detail {

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <exception>
 
-#include "gaussmap/io/map_pcd.h"
+#include "gaussmap/io/pcd/map_pcd.h"
 #include "gaussmap/map/leaves.h"
 
 namespace gaussmap {

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gaussmap/editing/compress.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/parallel.h"
+#include "editing/ellipsoid.h"
+#include "editing/thin_map.h"
+#include "gaussmap/map/sampling.h"
+#include "points/nearest_distances.h"
+
+namespace gaussmap {
+using namespace detail;
+
+namespace {
+
+/// Knows of each cell of a scale whether it is good enough for what is under it.
+class CellJudge {
+ public:
+  CellJudge(const GaussianMap<3>& map, double max_error, const CompressOptions& options)
+      : map_(map), max_error_(max_error), options_(options), data_(map.gaussianCount(0)) {
+    parallelFor(data_.size(), options.threads, 1024, [&](std::size_t i) { data_[i] = map.gaussian(i, 0).mean; });
+  }
+
+  /// The cells asked for that are good enough: a part of `asked`.
+  std::vector<char> goodCells(int s, const std::vector<char>& asked) const {
+    std::vector<char> good = asked;
+    parallelFor(good.size(), options_.threads, 4, [&](std::size_t cell) {
+      if (good[cell]) good[cell] = coversItsData(cell, s);
+    });
+    if (std::find(good.begin(), good.end(), true) != good.end()) refuseStraying(s, good);
+    return good;
+  }
+
+ private:
+  /// The data under a cell: the finest Gaussians of a map that is not compressed.
+  IndexRange dataUnder(std::size_t cell, int s) const {
+    IndexRange cells{cell, cell + 1};
+    for (int level = s; level > 0; --level)
+      cells = {map_.childCells(cells.first, level).first, map_.childCells(cells.last - 1, level).last};
+    return {map_.gaussiansOf(cells.first, 0).first, map_.gaussiansOf(cells.last - 1, 0).last};
+  }
+
+  bool coversItsData(std::size_t cell, int s) const {
+    std::vector<Ellipsoid95> ellipsoids;
+    const IndexRange clusters = map_.gaussiansOf(cell, s), data = dataUnder(cell, s);
+    for (std::size_t i = clusters.first; i < clusters.last; ++i) ellipsoids.emplace_back(map_.gaussian(i, s));
+    return std::all_of(data_.begin() + static_cast<std::ptrdiff_t>(data.first),
+                       data_.begin() + static_cast<std::ptrdiff_t>(data.last), [&](const Vector<3>& datum) {
+                         return std::any_of(ellipsoids.begin(), ellipsoids.end(), [&](const Ellipsoid95& ellipsoid) {
+                           return ellipsoid.distance(datum) <= max_error_;
+                         });
+                       });
+  }
+
+  /// Takes out the cells with a Gaussian whose samples stray from the data.
+  void refuseStraying(int s, std::vector<char>& good) const {
+    SampleOptions sampling;
+    sampling.samples = 0;
+    sampling.at_least = options_.samples;
+    sampling.seed = options_.seed;
+    sampling.threads = options_.threads;
+    sampling.bounds = SampleBounds::Cell;  // no member cells are left afterwards
+    const MapSamples<3> samples = sampleMap<3>(map_, s, sampling);
+    std::vector<std::size_t> cell_of(map_.gaussianCount(s));
+    for (std::size_t cell = 0; cell < good.size(); ++cell) {
+      const IndexRange clusters = map_.gaussiansOf(cell, s);
+      std::fill(cell_of.begin() + static_cast<std::ptrdiff_t>(clusters.first),
+                cell_of.begin() + static_cast<std::ptrdiff_t>(clusters.last), cell);
+    }
+    std::vector<Vector<3>> asked;
+    std::vector<std::uint32_t> gaussian;
+    for (std::size_t i = 0; i < samples.points.size(); ++i) {
+      if (!good[cell_of[samples.gaussian[i]]]) continue;
+      asked.push_back(samples.points[i]);
+      gaussian.push_back(samples.gaussian[i]);
+    }
+    const std::vector<double> distances = nearestDistances(asked, data_, options_.threads);
+    std::vector<std::size_t> placed(cell_of.size(), 0), near(cell_of.size(), 0);
+    for (std::size_t i = 0; i < distances.size(); ++i) {
+      ++placed[gaussian[i]];
+      near[gaussian[i]] += distances[i] <= max_error_ ? 1 : 0;
+    }
+    for (std::size_t i = 0; i < cell_of.size(); ++i)
+      if (100 * near[i] < 95 * placed[i] || placed[i] == 0) good[cell_of[i]] = false;
+  }
+
+  const GaussianMap<3>& map_;
+  const double max_error_;
+  const CompressOptions options_;
+  std::vector<Vector<3>> data_;  // [m], map frame
+};
+
+void check(const GaussianMap<3>& map, double max_error, const CompressOptions& options) {
+  if (!(std::isfinite(max_error) && max_error > 0.0))
+    throw std::invalid_argument("max_error = " + std::to_string(max_error) + ": must be a positive number of metres");
+  if (options.samples == 0) throw std::invalid_argument("samples = 0: without samples no Gaussian can be tested");
+  if (map.isCompressed())
+    throw std::invalid_argument(
+        "the map is compressed already, and what was deleted is not there to measure against: compress the map that "
+        "it was made from");
+}
+
+}  // namespace
+
+GaussianMap<3> compress(GaussianMap<3> map, double max_error, const CompressOptions& options) {
+  check(map, max_error, options);
+  if (map.empty() || map.scales() == 1) return map;
+  const CellJudge judge(map, max_error, options);
+  std::vector<std::vector<char>> keep(static_cast<std::size_t>(map.scales()));
+  keep.back().assign(map.cellCount(map.scales() - 1), true);
+  bool thinner = false;
+  for (int s = map.scales() - 1; s > 0; --s) {
+    const std::vector<char>& kept = keep[static_cast<std::size_t>(s)];
+    const std::vector<char> good = judge.goodCells(s, kept);
+    std::vector<char>& finer = keep[static_cast<std::size_t>(s) - 1];
+    finer.resize(map.cellCount(s - 1));
+    for (std::size_t cell = 0; cell < kept.size(); ++cell) {
+      const IndexRange children = map.childCells(cell, s);
+      std::fill(finer.begin() + static_cast<std::ptrdiff_t>(children.first),
+                finer.begin() + static_cast<std::ptrdiff_t>(children.last), kept[cell] && !good[cell]);
+      thinner |= static_cast<bool>(good[cell]);
+    }
+  }
+  return thinner ? thinMap<3>(map, keep) : map;
+}
+
+}  // namespace gaussmap

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gaussmap/editing/crop.h"
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "map/coarsen.h"
+#include "map/inherit_occupancy.h"
+#include "map/link_cells.h"
+
+namespace gaussmap {
+using namespace detail;
+
+namespace {
+
+/// Which Gaussians of a scale stay, and which of these as less than they were.
+struct Stay {
+  std::vector<char> stays, shrinks;
+};
+
+template <int D>
+Stay whatStays(const GaussianMap<D>& map, int s, const Stay& finer,
+               const std::function<bool(const Vector<D>&)>& isInside) {
+  const std::size_t count = map.gaussianCount(s);
+  Stay own{std::vector<char>(count, false), std::vector<char>(count, false)};
+  for (std::size_t i = 0; s > 0 && i < finer.stays.size(); ++i) {
+    const std::size_t parent = map.parentOf(i, s - 1);
+    own.stays[parent] |= finer.stays[i];
+    own.shrinks[parent] |= !finer.stays[i] || finer.shrinks[i];
+  }
+  for (std::size_t cell = 0; cell < map.cellCount(s); ++cell) {
+    if (!map.isLeaf(cell, s)) continue;
+    const IndexRange range = map.gaussiansOf(cell, s);
+    for (std::size_t i = range.first; i < range.last; ++i) own.stays[i] = isInside(map.gaussian(i, s).mean);
+  }
+  return own;
+}
+
+/// What stays of a scale, linked to nothing yet. `places` = where its Gaussians stand now.
+template <int D>
+MapScale<D> cropped(const GaussianMap<D>& map, int s, const Stay& stay, std::vector<std::uint32_t>& places) {
+  const MapScale<D>& old = map.scale(s);
+  MapScale<D> scale;
+  places.assign(stay.stays.size(), 0);
+  std::uint32_t next = 0;
+  for (std::size_t cell = 0; cell < old.keys.size(); ++cell) {
+    const std::uint32_t first = next;
+    const IndexRange range = map.gaussiansOf(cell, s);
+    for (std::size_t i = range.first; i < range.last; ++i) {
+      if (!stay.stays[i]) continue;
+      places[i] = next++;
+      if (!old.gaussians.empty()) scale.gaussians.push_back(old.gaussians[i]);
+      if (!old.moments.empty()) scale.moments.push_back(old.moments[i]);
+      if (!old.log_odds.empty()) scale.log_odds.push_back(old.log_odds[i]);
+    }
+    if (next == first) continue;
+    scale.keys.push_back(old.keys[cell]);
+    scale.first_gaussian.push_back(first);
+  }
+  scale.first_gaussian.push_back(next);
+  if (next == scale.keys.size()) scale.first_gaussian.clear();
+  return scale;
+}
+
+/// Sums the clusters that shrink anew from what is linked to them.
+template <int D>
+void matchShrunk(const GaussianMap<D>& map, int s, const Stay& stay, const std::vector<std::uint32_t>& places,
+                 const MapScale<D>& finer, MapScale<D>& scale) {
+  std::vector<char> shrinks(scale.gaussians.size(), false);
+  for (std::size_t i = 0; i < stay.stays.size(); ++i)
+    if (stay.stays[i]) shrinks[places[i]] = stay.shrinks[i];
+  std::vector<Gaussian<D>> data;
+  for (std::size_t cell = 0; cell < scale.keys.size(); ++cell) {
+    const IndexRange children{scale.first_child[cell], scale.first_child[cell + 1]};
+    if (children.empty()) continue;
+    const IndexRange clusters = gaussiansOf(scale, cell);
+    gatherUnder(finer, map.grid(), s - 1, children, data);
+    const std::size_t first = gaussiansOf(finer, children.first).first;
+    for (std::size_t i = clusters.first; i < clusters.last; ++i) {
+      if (!shrinks[i]) continue;
+      std::vector<Gaussian<D>> members;
+      for (std::size_t j = 0; j < data.size(); ++j)
+        if (finer.parent[first + j] == i) members.push_back(data[j]);
+      scale.gaussians[i] = merge(members);
+    }
+  }
+}
+
+}  // namespace
+
+template <int D>
+GaussianMap<D> crop(const GaussianMap<D>& map, const std::function<bool(const Vector<D>&)>& isInside) {
+  std::vector<MapScale<D>> scales;
+  Stay finer;
+  for (int s = 0; s < map.scales(); ++s) {
+    Stay own = whatStays(map, s, finer, isInside);
+    std::vector<std::uint32_t> places;
+    MapScale<D> scale = cropped(map, s, own, places);
+    if (s > 0) {
+      MapScale<D>& below = scales.back();
+      for (std::size_t i = 0; i < finer.stays.size(); ++i)
+        if (finer.stays[i]) below.parent.push_back(places[map.parentOf(i, s - 1)]);
+      scale.first_child = linkCells<D>(below.keys, scale.keys, map.grid(), s);
+      matchShrunk(map, s, own, places, below, scale);
+      inheritOccupancy<D>(below, scale);
+    }
+    scales.push_back(std::move(scale));
+    finer = std::move(own);
+  }
+  return GaussianMap<D>(map.options(), std::move(scales));
+}
+
+template <int D>
+bool isInBox(const Box<D>& box, const Vector<D>& point) {
+  return (point.array() >= box.low.array()).all() && (point.array() < box.high.array()).all();
+}
+
+Polygon::Polygon(std::vector<Vector<2>> corners) : corners_(std::move(corners)) {
+  if (corners_.size() < 3)
+    throw std::invalid_argument("a polygon has at least three corners, not " + std::to_string(corners_.size()));
+  for (std::size_t i = 0; i < corners_.size(); ++i)
+    if (!corners_[i].allFinite())
+      throw std::invalid_argument("corner " + std::to_string(i) + " of the polygon is not finite");
+}
+
+bool Polygon::contains(double x, double y) const {
+  bool inside = false;
+  for (std::size_t i = 0; i < corners_.size(); ++i) {
+    // The lower end first: a side is the same seen from either polygon that it belongs to.
+    const Vector<2>*low = &corners_[i], *high = &corners_[(i + 1) % corners_.size()];
+    if (low->y() > high->y()) std::swap(low, high);
+    if (y < low->y() || y >= high->y()) continue;
+    const Vector<2> along = *high - *low;
+    if ((x - low->x()) * along.y() < (y - low->y()) * along.x()) inside = !inside;
+  }
+  return inside;
+}
+
+#define GAUSSMAP_INSTANTIATE(D)                                                                         \
+  template GaussianMap<D> crop<D>(const GaussianMap<D>&, const std::function<bool(const Vector<D>&)>&); \
+  template bool isInBox<D>(const Box<D>&, const Vector<D>&);
+GAUSSMAP_INSTANTIATE(2)
+GAUSSMAP_INSTANTIATE(3)
+#undef GAUSSMAP_INSTANTIATE
+
+}  // namespace gaussmap

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "editing/ellipsoid.h"
+
+#include <cmath>
+
+namespace gaussmap::detail {
+namespace {
+
+constexpr double kSquaredRadius = 7.814727903251179;  // 95 % quantile of chi^2 with three degrees of freedom
+constexpr double kLeastHalfAxis = 1e-12;              // of the largest: what rounding may have made of an eigenvalue
+constexpr int kMostSteps = 100;                       // four or five do
+
+}  // namespace
+
+Ellipsoid95::Ellipsoid95(const Gaussian<3>& gaussian) : centre_(gaussian.mean) {
+  const PrincipalAxes<3> principal = principalAxes<3>(gaussian);
+  axes_ = principal.directions;
+  half_axes_ = (kSquaredRadius * principal.variances.cwiseMax(0.0)).cwiseSqrt();
+  half_axes_ = half_axes_.cwiseMax(kLeastHalfAxis * half_axes_.maxCoeff());
+}
+
+double Ellipsoid95::distance(const Vector<3>& point) const {
+  const Vector<3> y = (axes_.transpose() * (point - centre_)).cwiseAbs();
+  if (!(y.cwiseQuotient(half_axes_).squaredNorm() > 1.0)) return 0.0;
+  // The nearest point is h_i^2 y_i / (h_i^2 + t), where t > 0 solves sum_i (h_i y_i / (h_i^2 + t))^2 = 1. The sum falls
+  // and is convex, so that Newton's steps from below stay below; from there every single term is at most 1.
+  const Vector<3> squares = half_axes_.cwiseAbs2();
+  double t = (half_axes_.cwiseProduct(y) - squares).maxCoeff();
+  t = t > 0.0 ? t : 0.0;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const Vector<3> shifted = (squares.array() + t).matrix();
+    const Vector<3> terms = half_axes_.cwiseProduct(y).cwiseQuotient(shifted).cwiseAbs2();
+    const double change = (terms.sum() - 1.0) / (2.0 * terms.cwiseQuotient(shifted).sum());
+    if (!(change > 1e-14 * t)) break;
+    t += change;
+  }
+  return t * y.cwiseQuotient((squares.array() + t).matrix()).norm();
+}
+
+}  // namespace gaussmap::detail

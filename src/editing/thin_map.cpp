@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "editing/thin_map.h"
+
+#include <cstdint>
+#include <utility>
+
+namespace gaussmap::detail {
+namespace {
+
+/// What stays of a scale. `places` = where the Gaussians of the next coarser scale stand now; then those of this one.
+template <int D>
+MapScale<D> thinScale(const GaussianMap<D>& map, int s, const std::vector<char>& keep,
+                      std::vector<std::uint32_t>& places) {
+  const MapScale<D>& old = map.scale(s);
+  MapScale<D> thin;
+  std::vector<std::uint32_t> own_places(map.gaussianCount(s), 0);
+  std::uint32_t next = 0;
+  for (std::size_t cell = 0; cell < old.keys.size(); ++cell) {
+    if (!keep[cell]) continue;
+    thin.keys.push_back(old.keys[cell]);
+    if (!old.moments.empty()) thin.moments.push_back(old.moments[cell]);
+    if (!old.first_gaussian.empty()) thin.first_gaussian.push_back(next);
+    const IndexRange range = map.gaussiansOf(cell, s);
+    for (std::size_t i = range.first; i < range.last; ++i) {
+      own_places[i] = next++;
+      if (!old.gaussians.empty()) thin.gaussians.push_back(old.gaussians[i]);
+      if (!old.log_odds.empty()) thin.log_odds.push_back(old.log_odds[i]);
+      if (!old.parent.empty()) thin.parent.push_back(places[old.parent[i]]);
+    }
+  }
+  if (!old.first_gaussian.empty()) thin.first_gaussian.push_back(next);
+  places = std::move(own_places);
+  return thin;
+}
+
+/// Counts the children that stay of the cells that stay.
+template <int D>
+std::vector<std::uint32_t> childrenThatStay(const GaussianMap<D>& map, int s, const std::vector<char>& keep,
+                                            const std::vector<char>& keep_finer) {
+  std::vector<std::uint32_t> first_child = {0};
+  for (std::size_t cell = 0; cell < keep.size(); ++cell) {
+    if (!keep[cell]) continue;
+    const IndexRange children = map.childCells(cell, s);
+    std::uint32_t count = first_child.back();
+    for (std::size_t child = children.first; child < children.last; ++child) count += keep_finer[child] ? 1 : 0;
+    first_child.push_back(count);
+  }
+  return first_child;
+}
+
+}  // namespace
+
+template <int D>
+GaussianMap<D> thinMap(const GaussianMap<D>& map, const std::vector<std::vector<char>>& keep) {
+  std::vector<MapScale<D>> scales(keep.size());
+  std::vector<std::uint32_t> places;
+  for (int s = map.scales() - 1; s >= 0; --s) {
+    const auto at = static_cast<std::size_t>(s);
+    scales[at] = thinScale<D>(map, s, keep[at], places);
+    if (s > 0) scales[at].first_child = childrenThatStay<D>(map, s, keep[at], keep[at - 1]);
+  }
+  return GaussianMap<D>(map.options(), std::move(scales));
+}
+
+template GaussianMap<2> thinMap<2>(const GaussianMap<2>&, const std::vector<std::vector<char>>&);
+template GaussianMap<3> thinMap<3>(const GaussianMap<3>&, const std::vector<std::vector<char>>&);
+
+}  // namespace gaussmap::detail

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gaussmap/io/export/map_tiles.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <locale>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "gaussmap/io/pcd/map_pcd.h"
+#include "gaussmap/mapping/build.h"
+#include "io/files/atomic_file.h"
+#include "io/files/text.h"
+#include "io/files/text_lines.h"
+
+namespace gaussmap {
+using namespace detail;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kOptionsComment = "# gaussmap:";
+using Corner = std::array<std::int64_t, 2>;  // [m]
+
+std::string exactText(double value) {
+  char text[64];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+/// The records by lower corner of their square, means in the map frame.
+std::map<Corner, GaussianRecords> bySquare(const GaussianRecords& all, int size) {
+  std::map<Corner, GaussianRecords> squares;
+  for (GaussianRecord record : all.records) {
+    Corner corner{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double mean = static_cast<double>(record.mean[axis]) + all.origin(static_cast<Eigen::Index>(axis));
+      record.mean[axis] = static_cast<float>(mean);
+      if (axis == 2) continue;
+      const double low = std::floor(static_cast<double>(record.mean[axis]) / size) * size;
+      if (!(std::abs(low) < static_cast<double>(std::numeric_limits<std::int32_t>::max() - size)))
+        throw std::out_of_range("a Gaussian at " + std::to_string(mean) + " m: the index has 32-bit metres");
+      corner[axis] = static_cast<std::int64_t>(low);
+    }
+    squares[corner].records.push_back(record);
+  }
+  return squares;
+}
+
+/// A directory that is renamed when it is complete, and removed if it never is.
+class PartFolder {
+ public:
+  explicit PartFolder(const fs::path& target) : target_(target), part_(target) {
+    part_ += ".part";
+    std::error_code error;
+    if (fs::exists(target_, error) && !(fs::is_directory(target_, error) && fs::is_empty(target_, error)))
+      throw FileError(target_, "exists already and is kept");
+    if (!fs::create_directory(part_, error))
+      throw FileError(part_, error ? "cannot be made: " + error.message()
+                                   : "is there already: somebody writes these tiles, or died; remove it");
+  }
+  ~PartFolder() {
+    std::error_code ignored;
+    if (!done_) fs::remove_all(part_, ignored);
+  }
+  PartFolder(const PartFolder&) = delete;
+  PartFolder& operator=(const PartFolder&) = delete;
+  const fs::path& path() const { return part_; }
+  void commit() {
+    std::error_code error;
+    fs::rename(part_, target_, error);
+    if (error) throw FileError(target_, "cannot get its name: " + error.message());
+    done_ = true;
+  }
+
+ private:
+  fs::path target_, part_;
+  bool done_ = false;
+};
+
+/// What the index says.
+struct Index {
+  double x_size = 0.0, y_size = 0.0;
+  std::vector<std::string> files;
+  std::optional<MapOptions> options;
+};
+
+/// "key: rest" of a line; false for blank lines and comments.
+bool splitLine(const std::string& line, std::string& key, std::string& rest) {
+  const std::size_t first = line.find_first_not_of(" \t\r");
+  if (first == std::string::npos || line[first] == '#') return false;
+  const std::size_t colon = line.find(':', first);
+  if (colon == std::string::npos) return false;
+  const auto trimmed = [](const std::string& text) {
+    const std::size_t begin = text.find_first_not_of(" \t\r\"'"), end = text.find_last_not_of(" \t\r\"'");
+    return begin == std::string::npos ? std::string() : text.substr(begin, end - begin + 1);
+  };
+  key = trimmed(line.substr(first, colon - first));
+  rest = trimmed(line.substr(colon + 1));
+  return true;
+}
+
+double numberOf(const fs::path& path, std::size_t line, const std::string& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !(value > 0.0) || !std::isfinite(value))
+    throw FileError(path, "line " + std::to_string(line) + ": '" + text + "' is no positive number");
+  return value;
+}
+
+Index readIndex(const fs::path& path) {
+  Index index;
+  TextLines lines(path);
+  for (std::string line, key, rest; lines.next(line);) {
+    if (line.compare(0, kOptionsComment.size(), kOptionsComment) == 0) {
+      MapOptions options;
+      std::istringstream words(line.substr(kOptionsComment.size()));
+      words.imbue(std::locale::classic());
+      std::string name;
+      if (words >> name >> options.resolution >> name >> options.ratio >> name >> options.scales >> name >>
+          options.noise)
+        index.options = options;
+      continue;
+    }
+    if (!splitLine(line, key, rest)) continue;
+    if (key == "x_resolution")
+      index.x_size = numberOf(path, lines.number(), rest);
+    else if (key == "y_resolution")
+      index.y_size = numberOf(path, lines.number(), rest);
+    else if (fs::path(key).filename() != key || key == "." || key == "..")
+      throw FileError(path, "line " + std::to_string(lines.number()) + ": '" + key + "' is no file beside it");
+    else
+      index.files.push_back(key);
+  }
+  if (index.x_size == 0.0 || index.y_size == 0.0) throw FileError(path, "lacks x_resolution or y_resolution");
+  if (index.files.empty()) throw FileError(path, "names no tile");
+  return index;
+}
+
+/// One scale with one Gaussian a cell.
+bool isPlainFinest(const GaussianMap<3>& map, const GaussianRecords& all) {
+  return map.scales() == 1 && map.gaussianCount(0) == map.cellCount(0) && all.records.front().scale == 0.0f &&
+         !map.hasOccupancy();
+}
+
+}  // namespace
+
+WrittenTiles saveTiles(const GaussianMap<3>& map, const fs::path& folder, const TilesOptions& options) {
+  if (options.size < 1) throw std::invalid_argument("size = " + std::to_string(options.size) + ": at least 1 m");
+  const std::map<Corner, GaussianRecords> squares = bySquare(toRecords(map, options.scale), options.size);
+  PartFolder part(folder);
+  const MapOptions& grid = map.options();
+  std::ostringstream index;
+  index.imbue(std::locale::classic());
+  index << kOptionsComment << " resolution " << exactText(grid.resolution) << " ratio " << grid.ratio << " scales "
+        << grid.scales << " noise " << exactText(grid.noise) << '\n'
+        << "x_resolution: " << options.size << ".0\ny_resolution: " << options.size << ".0\n";
+  WrittenTiles written;
+  for (const auto& [corner, records] : squares) {
+    const std::string name = "tile_" + std::to_string(corner[0]) + "_" + std::to_string(corner[1]) + ".pcd";
+    writeRecordsPcd(records, part.path() / name);
+    index << name << ": [" << corner[0] << ", " << corner[1] << "]\n";
+    ++written.tiles;
+    written.gaussians += records.records.size();
+  }
+  AtomicFile file(part.path() / kTilesIndex);
+  const std::string text = index.str();
+  file.write(text.data(), text.size());
+  file.commit();
+  part.commit();
+  return written;
+}
+
+GaussianMap<3> loadTiles(const fs::path& folder) {
+  const fs::path path = folder / kTilesIndex;
+  const Index index = readIndex(path);
+  GaussianRecords all;
+  for (const std::string& file : index.files) {
+    GaussianRecords tile = readRecordsPcd(folder / file);
+    if (!tile.origin.isZero()) throw FileError(folder / file, "is no tile: its VIEWPOINT shifts it");
+    all.records.insert(all.records.end(), tile.records.begin(), tile.records.end());
+  }
+  try {
+    GaussianMap<3> map = fromRecords(all);
+    if (!index.options || !isPlainFinest(map, all) || index.options->scales == 1) return map;
+    return build<3>(map.scale(0), *index.options);
+  } catch (const std::logic_error& error) {
+    throw FileError(path, std::string("its tiles are no map: ") + error.what());
+  }
+}
+
+}  // namespace gaussmap

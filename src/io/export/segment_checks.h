@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+
+#include "gaussmap/segments/segment_map.h"
+
+namespace gaussmap::detail {
+
+inline bool isFinite(const Segment& segment) {
+  return segment.start.allFinite() && segment.end.allFinite() && segment.covariance.allFinite() &&
+         std::isfinite(segment.normal_variance) && std::isfinite(segment.weight);
+}
+
+/// Throws std::invalid_argument, naming the segment or the chain, unless all numbers are finite and each segment is in
+/// exactly one chain.
+inline void checkSegments(const SegmentMap& map) {
+  for (std::size_t i = 0; i < map.segments.size(); ++i)
+    if (!isFinite(map.segments[i])) throw std::invalid_argument("segment " + std::to_string(i) + " is not finite");
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < map.chains.size(); ++i) {
+    if (map.chains[i].first != next || map.chains[i].last <= next || map.chains[i].last > map.segments.size())
+      throw std::invalid_argument("chain " + std::to_string(i) + " does not go on where the one before it ends");
+    next = map.chains[i].last;
+  }
+  if (next != map.segments.size()) throw std::invalid_argument("segment " + std::to_string(next) + " is in no chain");
+}
+
+}  // namespace gaussmap::detail

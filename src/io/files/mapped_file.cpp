@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/files/mapped_file.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+
+#include "gaussmap/core/error.h"
+#include "io/files/open_files.h"
+
+namespace gaussmap::detail {
+namespace {
+
+[[noreturn]] void throwSystemError(const std::filesystem::path& path, const std::string& what) {
+  throw FileError(path, what + ": " + std::generic_category().message(errno));
+}
+
+void requireRegular(const std::filesystem::path& path, const struct stat& status) {
+  if (S_ISDIR(status.st_mode)) throw FileError(path, "is a directory, not a file");
+  if (!S_ISREG(status.st_mode)) throw FileError(path, "is a pipe or a device: save it as a file first");
+}
+
+class Descriptor {
+ public:
+  // Non-blocking, because a file may have become a pipe since it was looked at.
+  explicit Descriptor(const std::filesystem::path& path)
+      : number_(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
+    if (number_ < 0) throwSystemError(path, "cannot be opened");
+  }
+  ~Descriptor() { close(number_); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int number() const { return number_; }
+
+ private:
+  int number_;
+};
+
+}  // namespace
+
+MappedFile::MappedFile(const std::filesystem::path& path) : path_(path) {
+  // Looked at before it is opened: opening alone may wake the other end of a pipe or move a device.
+  struct stat status;
+  if (stat(path.c_str(), &status) != 0) throwSystemError(path, "cannot be opened");
+  requireRegular(path, status);
+  const Descriptor descriptor(path);
+  if (fstat(descriptor.number(), &status) != 0) throwSystemError(path, "cannot be read");
+  requireRegular(path, status);
+  device_ = status.st_dev;
+  inode_ = status.st_ino;
+  const auto size = static_cast<std::size_t>(status.st_size);
+  if (size == 0) return;
+  void* const address = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor.number(), 0);
+  if (address == MAP_FAILED) throwSystemError(path, "cannot be read");
+  bytes_ = {static_cast<const char*>(address), size};
+  entry_ = mapped_files.add(path, -1, bytes_);
+}
+
+MappedFile::~MappedFile() {
+  if (bytes_.empty()) return;
+  OpenFiles::remove(entry_);
+  munmap(const_cast<char*>(bytes_.data()), bytes_.size());
+}
+
+void MappedFile::requireWhole() const {
+  // By its name, not by a descriptor kept open: there may be thousands of these. Another file of that name does no
+  // harm.
+  struct stat status;
+  if (stat(path_.c_str(), &status) != 0 || status.st_dev != device_ || status.st_ino != inode_) return;
+  if (static_cast<std::size_t>(status.st_size) < bytes_.size())
+    throw FileError(path_, "was cut off from " + std::to_string(bytes_.size()) + " to " +
+                               std::to_string(status.st_size) + " bytes while it was read");
+}
+
+}  // namespace gaussmap::detail

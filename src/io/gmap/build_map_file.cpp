@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gaussmap/io/gmap/build_map_file.h"
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "core/parallel.h"
+#include "io/files/atomic_file.h"
+#include "io/gmap/gain_threshold.h"
+#include "io/gmap/map_schema.h"
+#include "io/gmap/spilled_cells.h"
+#include "map/coarsen.h"
+#include "mapping/refine_scale.h"
+
+namespace gaussmap {
+using namespace detail;
+
+namespace {
+
+constexpr double kShareOfSums = 0.6;      // of the memory, while points are counted
+constexpr std::size_t kBatchesHeld = 24;  // as many times its bytes does a batch need while it is worked on
+
+/// Gives memory that was freed back to the system: what one thread freed is else not there for another.
+void giveBackMemory() {
+#ifdef __GLIBC__
+  ::malloc_trim(0);
+#endif
+}
+
+/// The dendrograms of one batch, on the disk.
+struct SpilledCuts {
+  SpillFile::Span keys;   // of the coarse cells
+  SpillFile::Span sizes;  // merges of each
+  SpillFile::Span merges;
+  SpillFile::Span gains;
+};
+
+/// A finished tile, on the disk.
+struct SpilledTile {
+  TileRow<3> row;  // without its bytes
+  SpillFile::Span bytes;
+};
+
+/// How many parts the cells of a scale are cut into.
+class ScaleBudget {
+ public:
+  ScaleBudget(const SpillFile& file, const std::vector<SpilledCuts>& cuts, const MapOptions& options, int scale,
+              std::size_t extra)
+      : threshold_(largestGains(extra, [&](const std::function<void(double)>& visit) {
+          for (const SpilledCuts& batch : cuts)
+            for (const double gain : arrayOf<double>(file, batch.gains)) visit(gain);
+        })) {
+    if (threshold_.ties > 0) shareTies(file, cuts, options, scale);
+  }
+
+  std::size_t partsOf(const CellKey<3>& key, const std::vector<double>& gains) const {
+    const auto falling = [](double a, double b) { return a > b; };
+    const auto above = std::lower_bound(gains.begin(), gains.end(), threshold_.gain, falling) - gains.begin();
+    const auto ties = ties_.find(key);
+    return 1 + static_cast<std::size_t>(above) + (ties == ties_.end() ? 0 : ties->second);
+  }
+
+  template <typename Value>
+  static std::vector<Value> arrayOf(const SpillFile& file, const SpillFile::Span& span) {
+    std::vector<Value> values;
+    std::size_t place = 0;
+    takeArray(file.read(span), place, values);
+    return values;
+  }
+
+ private:
+  /// Of gains that are equal those of the first cells are taken, as partsPerCell() does it.
+  void shareTies(const SpillFile& file, const std::vector<SpilledCuts>& cuts, const MapOptions& options, int scale) {
+    std::vector<CellKey<3>> keys;
+    std::vector<std::size_t> counts;
+    for (const SpilledCuts& batch : cuts) {
+      const auto cells = arrayOf<CellKey<3>>(file, batch.keys);
+      const auto sizes = arrayOf<std::uint32_t>(file, batch.sizes);
+      const auto gains = arrayOf<double>(file, batch.gains);
+      std::size_t first = 0;
+      for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+        const auto begin = gains.begin() + static_cast<std::ptrdiff_t>(first);
+        const auto count = std::count(begin, begin + sizes[cell], threshold_.gain);
+        first += sizes[cell];
+        if (count == 0) continue;
+        keys.push_back(cells[cell]);
+        counts.push_back(static_cast<std::size_t>(count));
+      }
+    }
+    std::size_t left = threshold_.ties;
+    for (const std::uint32_t from : keyOrder<3>(keys, options.ratio, options.scales - 1 - scale)) {
+      ties_[keys[from]] = std::min(left, counts[from]);
+      left -= std::min(left, counts[from]);
+      if (left == 0) break;
+    }
+  }
+
+  GainThreshold threshold_;
+  std::map<CellKey<3>, std::size_t> ties_;
+};
+
+class Builder {
+ public:
+  Builder(const MapOptions& map, const std::filesystem::path& folder, const BuildMapFileOptions& options)
+      : grid_(map),
+        options_(options),
+        span_(tileSpan(map)),
+        batch_bytes_(options.max_memory / kBatchesHeld),
+        spill_(folder),
+        cells_(std::make_unique<SpilledCells>(spill_, grid_.options(), 0)) {}
+
+  void add(const MomentGrid<3>& moments) { cells_->add(moments); }
+
+  void finishScales() {
+    for (int s = 0; s < grid_.scales(); ++s) {
+      cell_counts_.push_back(0);
+      gaussian_counts_.push_back(0);
+      tiles_.emplace_back();
+      if (s + 1 == grid_.scales()) {
+        for (const auto& tiles : cells_->batches(batch_bytes_)) keepTiles(cells_->load(tiles, threads()), nullptr, s);
+      } else {
+        auto coarser = std::make_unique<SpilledCells>(spill_, grid_.options(), s + 1);
+        finishScale(s, *coarser);
+        cells_ = std::move(coarser);
+      }
+    }
+  }
+
+  void write(Database& database, const MapMetadata& metadata) const {
+    beginMap(database);
+    MapMetadata entries = ownEntries<3>(grid_.options(), cell_counts_, gaussian_counts_);
+    entries["grows"] = "1";
+    entries["occupancy"] = "0";
+    for (const auto& [name, value] : metadata) entries[kUserPrefix + name] = value;
+    writeEntries(database, entries);
+    TileInsert<3> insert(database);
+    for (int s = grid_.scales() - 1; s >= 0; --s)
+      for (const SpilledTile& tile : tiles_[static_cast<std::size_t>(s)]) {
+        TileRow<3> row = tile.row;
+        row.bytes = spill_.read(tile.bytes);
+        insert.write(row);
+      }
+    database.execute("COMMIT");
+  }
+
+  const std::vector<std::size_t>& cellCounts() const { return cell_counts_; }
+  const std::vector<std::size_t>& gaussianCounts() const { return gaussian_counts_; }
+
+ private:
+  int threads() const { return options_.refine.threads; }
+  bool refines() const { return options_.refine.budget != 1.0 || !options_.refine.max_gaussians.empty(); }
+
+  /// Makes the scale above and keeps the tiles of this one, which then know their parents.
+  void finishScale(int s, SpilledCells& coarser) {
+    const auto batches = cells_->batches(batch_bytes_);
+    std::vector<SpilledCuts> cuts;
+    std::optional<ScaleBudget> budget;
+    if (refines()) {
+      std::size_t coarse_cells = 0, gaussians = 0;
+      for (const auto& tiles : batches) {
+        giveBackMemory();
+        CellBatch batch = cells_->load(tiles, threads());
+        MapScale<3> coarse = coarsen<3>(batch.cells, grid_, s);
+        const CoarseScale<3> scale{batch.cells, coarse, grid_, s};
+        cuts.push_back(keepCuts(coarse.keys, ScaleCuts<3>(scale, batch.areas, options_.refine)));
+        coarse_cells += coarse.keys.size();
+        gaussians += batch.cells.gaussianCount();
+      }
+      budget.emplace(spill_, cuts, grid_.options(), s + 1,
+                     extraGaussians(options_.refine, s + 1, coarse_cells, gaussians));
+    }
+    for (std::size_t i = 0; i < batches.size(); ++i) {
+      giveBackMemory();
+      CellBatch batch = cells_->load(batches[i], threads());
+      MapScale<3> coarse = coarsen<3>(batch.cells, grid_, s);
+      if (budget) cut(batch, coarse, s, cuts[i], *budget);
+      std::vector<double> areas(coarse.gaussianCount(), 0.0);
+      for (std::size_t j = 0; j < batch.areas.size(); ++j) areas[batch.cells.parent[j]] += batch.areas[j];
+      coarser.add(coarse, areas);
+      keepTiles(batch, &coarse, s);
+    }
+  }
+
+  SpilledCuts keepCuts(const std::vector<CellKey<3>>& keys, const ScaleCuts<3>& cuts) {
+    std::vector<std::uint32_t> sizes;
+    std::vector<Dendrogram::Merge> merges;
+    std::vector<double> gains;
+    for (std::size_t cell = 0; cell < keys.size(); ++cell) {
+      const std::vector<Dendrogram::Merge>& own = cuts.dendrograms()[cell].merges;
+      sizes.push_back(static_cast<std::uint32_t>(own.size()));
+      merges.insert(merges.end(), own.begin(), own.end());
+      gains.insert(gains.end(), cuts.gains()[cell].begin(), cuts.gains()[cell].end());
+    }
+    const auto keep = [&](const auto& values) {
+      std::string bytes;
+      putArray(bytes, values);
+      return spill_.append(bytes);
+    };
+    return {keep(keys), keep(sizes), keep(merges), keep(gains)};
+  }
+
+  void cut(CellBatch& batch, MapScale<3>& coarse, int s, const SpilledCuts& kept, const ScaleBudget& budget) const {
+    const auto sizes = ScaleBudget::arrayOf<std::uint32_t>(spill_, kept.sizes);
+    const auto merges = ScaleBudget::arrayOf<Dendrogram::Merge>(spill_, kept.merges);
+    std::vector<Dendrogram> dendrograms;
+    auto next = merges.begin();
+    for (const std::uint32_t size : sizes) {
+      dendrograms.push_back({std::size_t{size} + 1, {next, next + size}});
+      next += size;
+    }
+    CoarseScale<3> scale{batch.cells, coarse, grid_, s};
+    const ScaleCuts<3> cuts(scale, std::move(dendrograms), threads());
+    std::vector<std::size_t> parts;
+    for (std::size_t cell = 0; cell < sizes.size(); ++cell)
+      parts.push_back(budget.partsOf(coarse.keys[cell], cuts.gains()[cell]));
+    scale.replaceGaussians(cuts.clusters(parts));
+  }
+
+  /// The tiles of a batch, compressed; `coarse` = the cells above, nullptr at the coarsest scale.
+  void keepTiles(const CellBatch& batch, const MapScale<3>* coarse, int s) {
+    const auto at = static_cast<std::size_t>(s);
+    std::vector<TileRow<3>> rows(batch.tiles.size());
+    std::vector<std::uint32_t> first_of_parent;  // per cell, the first Gaussian of the cell above
+    for (std::size_t cell = 0; coarse && cell < coarse->keys.size(); ++cell)
+      first_of_parent.insert(first_of_parent.end(), coarse->first_child[cell + 1] - coarse->first_child[cell],
+                             static_cast<std::uint32_t>(gaussiansOf(*coarse, cell).first));
+    parallelFor(rows.size(), threads(), 1, [&](std::size_t i) {
+      Tile<3> tile;
+      for (std::size_t cell = i > 0 ? batch.tile_end[i - 1] : 0; cell < batch.tile_end[i]; ++cell) {
+        const IndexRange range = gaussiansOf(batch.cells, cell);
+        tile.keys.push_back(batch.cells.keys[cell]);
+        tile.counts.push_back(static_cast<std::uint32_t>(range.size()));
+        if (s == 0) tile.moments.push_back(batch.cells.moments[cell]);
+        for (std::size_t j = range.first; j < range.last; ++j) {
+          if (s > 0) tile.gaussians.push_back(batch.cells.gaussians[j]);
+          if (coarse) tile.labels.push_back(batch.cells.parent[j] - first_of_parent[cell]);
+        }
+      }
+      rows[i] = {s, batch.tiles[i], tile.keys.size(), tile.gaussianCount(),
+                 encodeTile<3>(tile, {s, batch.tiles[i], span_}, grid_.options(), options_.save.compression)};
+    });
+    for (const TileRow<3>& row : rows) {
+      cell_counts_[at] += row.cells;
+      gaussian_counts_[at] += row.gaussians;
+      tiles_[at].push_back({{s, row.tile, row.cells, row.gaussians, {}}, spill_.append(row.bytes)});
+    }
+  }
+
+  const Grid<3> grid_;
+  const BuildMapFileOptions& options_;
+  const std::int32_t span_;
+  const std::size_t batch_bytes_;
+  SpillFile spill_;
+  std::unique_ptr<SpilledCells> cells_;  // of the scale that is in work
+  std::vector<std::size_t> cell_counts_, gaussian_counts_;
+  std::vector<std::vector<SpilledTile>> tiles_;  // by scale, in x, y, z order
+};
+
+}  // namespace
+
+BuiltMapFile buildMapFile(const std::vector<ScanSource>& scans, const AccumulateOptions& reading, const MapOptions& map,
+                          const std::filesystem::path& path,
+                          const std::function<MapMetadata(const PointCounts&)>& metadataOf,
+                          const BuildMapFileOptions& options,
+                          const std::function<void(const AccumulateProgress&)>& progress) {
+  if (options.max_memory < kLeastBuildMemory)
+    throw std::invalid_argument("max_memory = " + std::to_string(options.max_memory) + ": at least " +
+                                std::to_string(kLeastBuildMemory) + " bytes are needed");
+  if (options.refine.method != RefineMethod::Agglomerate)
+    throw std::invalid_argument("method: only agglomeration goes tile by tile");
+  if (options.save.precision != Precision::Exact) throw std::invalid_argument("precision: build first, then finish");
+  if (reading.resolution != map.resolution)
+    throw std::invalid_argument("resolution: the scans are counted in other cells than the map has");
+  refine<3>(GaussianMap<3>(map), options.refine);  // looks at the options; there is nothing to do yet
+  std::error_code error;
+  if (!options.save.overwrite && std::filesystem::exists(path, error))
+    throw FileError(path, "exists already and is kept");
+  AtomicFile file(path);
+  const std::filesystem::path folder = file.target().has_parent_path() ? file.target().parent_path() : ".";
+  Builder builder(map, folder, options);
+  const auto share = static_cast<std::size_t>(kShareOfSums * static_cast<double>(options.max_memory));
+  BuiltMapFile built;
+  built.counts = accumulateScansInParts(
+      scans, reading, share,
+      [&](const MomentGrid<3>& moments) {
+        giveBackMemory();  // that of the sums before
+        builder.add(moments);
+      },
+      progress);
+  const MapMetadata metadata = metadataOf(built.counts);
+  giveBackMemory();
+  builder.finishScales();
+  {
+    Database database(file.partPath(), Database::Mode::CreateForBulkWrite);
+    builder.write(database, metadata);
+  }
+  file.commit();
+  built.cells = builder.cellCounts();
+  built.gaussians = builder.gaussianCounts();
+  return built;
+}
+
+}  // namespace gaussmap

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/gmap/spilled_cells.h"
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+#include <utility>
+
+#include "core/parallel.h"
+#include "io/gmap/map_schema.h"
+#include "map/coarsen.h"
+
+namespace gaussmap::detail {
+namespace {
+
+/// Cells of one tile as they stand in the file: moments at the finest scale, else Gaussians.
+struct Piece {
+  std::vector<CellKey<3>> keys;
+  std::vector<CellMoments<3>> moments;
+  std::vector<std::uint32_t> counts;
+  std::vector<Gaussian<3>> gaussians;
+  std::vector<double> areas;
+
+  std::string bytes() const {
+    std::string bytes;
+    putArray(bytes, keys);
+    putArray(bytes, moments);
+    putArray(bytes, counts);
+    putArray(bytes, gaussians);
+    putArray(bytes, areas);
+    return bytes;
+  }
+  void append(const std::string& bytes) {
+    std::size_t place = 0;
+    takeArray(bytes, place, keys);
+    takeArray(bytes, place, moments);
+    takeArray(bytes, place, counts);
+    takeArray(bytes, place, gaussians);
+    takeArray(bytes, place, areas);
+  }
+};
+
+/// Adds the sums of cells that are there more than once.
+Piece withEachCellOnce(const Piece& piece) {
+  std::vector<std::uint32_t> order(piece.keys.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return piece.keys[a] < piece.keys[b]; });
+  Piece once;
+  for (const std::uint32_t from : order) {
+    if (once.keys.empty() || once.keys.back() != piece.keys[from]) {
+      once.keys.push_back(piece.keys[from]);
+      once.moments.push_back(piece.moments[from]);
+    } else {
+      once.moments.back() += piece.moments[from];
+    }
+  }
+  return once;
+}
+
+/// Appends the cells in key order.
+void appendInOrder(CellBatch& batch, const Piece& piece, const MapOptions& options, int scale) {
+  std::vector<std::size_t> first(piece.keys.size() + 1, 0);
+  for (std::size_t i = 0; i < piece.counts.size(); ++i) first[i + 1] = first[i] + piece.counts[i];
+  for (const std::uint32_t from : keyOrder<3>(piece.keys, options.ratio, options.scales - 1 - scale)) {
+    batch.cells.keys.push_back(piece.keys[from]);
+    if (scale == 0) {
+      batch.cells.moments.push_back(piece.moments[from]);
+      batch.areas.push_back(1.0);
+      continue;
+    }
+    for (std::size_t i = first[from]; i < first[from + 1]; ++i) {
+      batch.cells.gaussians.push_back(piece.gaussians[i]);
+      batch.areas.push_back(piece.areas[i]);
+    }
+    batch.cells.first_gaussian.push_back(static_cast<std::uint32_t>(batch.cells.gaussians.size()));
+  }
+}
+
+}  // namespace
+
+SpilledCells::SpilledCells(SpillFile& file, const MapOptions& options, int scale)
+    : file_(file), options_(options), scale_(scale) {}
+
+void SpilledCells::add(const MomentGrid<3>& moments) {
+  const std::int32_t span = tileSpan(options_);
+  std::map<CellKey<3>, std::vector<std::uint32_t>> by_tile;
+  std::vector<std::uint32_t>* last = nullptr;
+  CellKey<3> last_tile{};
+  for (std::size_t i = 0; i < moments.size(); ++i) {  // neighbours in the grid were seen together
+    const CellKey<3> tile = tileOf<3>(moments[i].key, span);
+    if (last == nullptr || tile != last_tile) last = &by_tile[tile];
+    last_tile = tile;
+    last->push_back(static_cast<std::uint32_t>(i));
+  }
+  for (const auto& [tile, cells] : by_tile) {
+    Piece piece;
+    for (const std::uint32_t i : cells) {
+      piece.keys.push_back(moments[i].key);
+      piece.moments.push_back(moments[i].moments);
+    }
+    pieces_[tile].push_back(file_.append(piece.bytes()));
+  }
+}
+
+void SpilledCells::add(const MapScale<3>& cells, const std::vector<double>& areas) {
+  const std::int32_t span = tileSpan(options_);
+  std::map<CellKey<3>, Piece> by_tile;
+  for (std::size_t cell = 0; cell < cells.keys.size(); ++cell) {
+    Piece& piece = by_tile[tileOf<3>(cells.keys[cell], span)];
+    const IndexRange range = gaussiansOf(cells, cell);
+    piece.keys.push_back(cells.keys[cell]);
+    piece.counts.push_back(static_cast<std::uint32_t>(range.size()));
+    for (std::size_t i = range.first; i < range.last; ++i) {
+      piece.gaussians.push_back(cells.gaussians[i]);
+      piece.areas.push_back(areas[i]);
+    }
+  }
+  for (const auto& [tile, piece] : by_tile) pieces_[tile].push_back(file_.append(piece.bytes()));
+}
+
+std::vector<std::vector<CellKey<3>>> SpilledCells::batches(std::size_t bytes) const {
+  std::vector<std::vector<CellKey<3>>> batches;
+  std::uint64_t held = 0;
+  for (const auto& [tile, spans] : pieces_) {
+    std::uint64_t size = 0;
+    for (const SpillFile::Span& span : spans) size += span.size;
+    if (batches.empty() || held + size > bytes) {
+      batches.emplace_back();
+      held = 0;
+    }
+    batches.back().push_back(tile);
+    held += size;
+  }
+  return batches;
+}
+
+CellBatch SpilledCells::load(const std::vector<CellKey<3>>& tiles, int threads) {
+  std::vector<Piece> pieces(tiles.size());
+  parallelFor(tiles.size(), threads, 1, [&](std::size_t i) {
+    for (const SpillFile::Span& span : pieces_.at(tiles[i])) pieces[i].append(file_.read(span));
+    if (pieces_.at(tiles[i]).size() > 1 && scale_ == 0) pieces[i] = withEachCellOnce(pieces[i]);
+  });
+  CellBatch batch;
+  if (scale_ > 0) batch.cells.first_gaussian.push_back(0);
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    std::vector<SpillFile::Span>& spans = pieces_.at(tiles[i]);
+    if (spans.size() > 1 && scale_ == 0) spans = {file_.append(pieces[i].bytes())};
+    appendInOrder(batch, pieces[i], options_, scale_);
+    batch.tiles.push_back(tiles[i]);
+    batch.tile_end.push_back(batch.cells.keys.size());
+    pieces[i] = {};
+  }
+  return batch;
+}
+
+}  // namespace gaussmap::detail

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace gaussmap::detail {
+
+/// A thin owner of SQLite handles: every error becomes a FileError with the path of the database.
+/// A file is read as if nobody wrote to it (it is only ever replaced as a whole): without locks, without regard for
+/// journals beside it, and with no more steps a statement and no longer values than its size warrants, whatever its
+/// pages say.
+class Database {
+ public:
+  enum class Mode {
+    ReadOnly,
+    CreateForBulkWrite,
+    ChangeCopy,  ///< of a file that nobody else looks at: without a journal, but distrusted as by ReadOnly
+    InMemory     ///< the path is a name for messages
+  };
+  Database(const std::filesystem::path& path, Mode mode);
+
+  void execute(const std::string& sql);
+  const std::filesystem::path& path() const { return path_; }
+  sqlite3* handle() const { return handle_.get(); }
+  [[noreturn]] void fail(const std::string& doing) const;
+  [[noreturn]] void fail() const;
+
+ private:
+  struct Close {
+    void operator()(sqlite3* handle) const;
+  };
+  friend class Statement;
+  void distrust();
+  /// A statement begins.
+  void renewSteps() const;
+
+  std::filesystem::path path_;
+  Mode mode_;
+  std::unique_ptr<std::int64_t> steps_left_;  // in thousands
+  std::int64_t most_steps_ = 0;
+  std::unique_ptr<sqlite3, Close> handle_;
+};
+
+class Statement {
+ public:
+  Statement(const Database& database, const std::string& sql);
+
+  void bind(int index, std::int64_t value);
+  void bind(int index, std::string_view text);
+  void bindBlob(int index, std::string_view bytes);
+  /// True while there is a row; false when done.
+  bool step();
+  void reset();
+
+  std::int64_t integer(int column) const;
+  std::string text(int column) const;
+  /// Valid until the next step.
+  std::string_view blob(int column) const;
+
+ private:
+  struct Finalize {
+    void operator()(sqlite3_stmt* statement) const;
+  };
+  const Database& database_;
+  std::unique_ptr<sqlite3_stmt, Finalize> handle_;
+};
+
+}  // namespace gaussmap::detail

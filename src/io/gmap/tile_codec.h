@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gaussmap/io/gmap/map_file.h"
+#include "gaussmap/map/gaussian_map.h"
+
+namespace gaussmap::detail {
+
+/// The cells of one scale in one tile, in any order: what a row of the map file holds.
+template <int D>
+struct Tile {
+  std::vector<CellKey<D>> keys;         ///< n
+  std::vector<std::uint32_t> counts;    ///< n Gaussians in each cell
+  std::vector<CellMoments<D>> moments;  ///< n, or empty
+  std::vector<Gaussian<D>> gaussians;   ///< m = sum of counts, or empty; mean about the centre of the cell
+  std::vector<std::uint32_t> labels;    ///< m ranks of the parent in the cell above, or empty
+  std::vector<float> log_odds;          ///< m, or empty
+
+  std::size_t gaussianCount() const { return moments.empty() ? gaussians.size() : moments.size(); }
+};
+
+/// What the bytes of a tile are checked against: a tile cannot be taken for another one's, or for another map's.
+template <int D>
+struct TileAddress {
+  int scale = 0;
+  CellKey<D> tile{};
+  std::int32_t span = 32;  ///< cells along its side
+};
+
+/// Columns, bytes of equal weight together, zstd with checksum; a skippable frame behind it where the data shrink more
+/// than 64 times (finished: 16 times). Little endian whatever the machine. Throws std::domain_error if a finished tile
+/// is asked for and a Gaussian is none (io/quantise.h).
+template <int D>
+std::string encodeTile(const Tile<D>& tile, const TileAddress<D>& address, const MapOptions& options, int level,
+                       Precision precision = Precision::Exact);
+
+/// Throws std::runtime_error, saying what is wrong, unless the bytes are exactly what encodeTile makes of a tile at
+/// this address with these options. Allocates no more than 64 times the bytes given, twice; for a finished tile 256
+/// times.
+template <int D>
+Tile<D> decodeTile(std::string_view bytes, const TileAddress<D>& address, const MapOptions& options);
+
+}  // namespace gaussmap::detail

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <stdexcept>
+#include <string>
+
+#include "gaussmap/io/pcd/map_pcd.h"
+#include "map/link_cells.h"
+#include "map/map_origin.h"
+
+namespace gaussmap {
+using namespace detail;
+
+namespace {
+
+constexpr double kRounding = 1e-6;  // what floats may have done to an eigenvalue, as a part of the largest
+
+GaussianRecord toRecord(const GaussianMap<3>& map, std::size_t index, int scale, const Eigen::Vector3d& origin) {
+  const CellKey<3>& key = map.scale(scale).keys[map.cellOf(index, scale)];
+  const Gaussian<3> gaussian = gaussianAbout(origin, map, index, scale);
+  const Eigen::Vector3f mean = gaussian.mean.cast<float>();
+  const Eigen::Matrix3f cov = gaussian.cov.cast<float>();
+  return {{mean.x(), mean.y(), mean.z()},
+          {cov(0, 0), cov(0, 1), cov(0, 2), cov(1, 1), cov(1, 2), cov(2, 2)},
+          static_cast<float>(gaussian.weight),
+          map.logOdds(index, scale),
+          static_cast<float>(map.grid().side(scale)),
+          static_cast<float>(scale),
+          key};
+}
+
+Matrix<3> positiveDefinite(const GaussianRecord& record) {
+  const auto& c = record.covariance;
+  Eigen::Matrix3d cov;
+  cov << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
+  if (!cov.allFinite()) throw std::invalid_argument("a covariance that is not finite");
+  if (Eigen::LLT<Eigen::Matrix3d>(cov).info() == Eigen::Success) return cov;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(cov);
+  const double largest = solver.eigenvalues().maxCoeff();
+  if (!(largest > 0.0) || solver.eigenvalues().minCoeff() < -kRounding * largest)
+    throw std::invalid_argument("a covariance that is not positive definite");
+  const Eigen::Vector3d lifted = solver.eigenvalues().cwiseMax(kRounding * largest);
+  return solver.eigenvectors() * lifted.asDiagonal() * solver.eigenvectors().transpose();
+}
+
+/// The shortest decimal that the float stands for: 0.1, not 0.100000001490116.
+double asWritten(float value) {
+  char text[32];
+  const char* const end = std::to_chars(text, text + sizeof text, value).ptr;
+  double decimal = static_cast<double>(value);
+  std::from_chars(text, end, decimal);
+  return decimal;
+}
+
+MapOptions optionsOf(const std::map<int, float>& sides) {
+  MapOptions options;
+  const int finest = sides.begin()->first;
+  options.resolution = asWritten(sides.begin()->second);
+  options.scales = static_cast<int>(sides.size());
+  // The file does not tell the noise floor: the usual one, or more where the coarsest cells ask for it (Grid).
+  options.noise = std::max(options.resolution / 20.0, 1.01e-7 * static_cast<double>(sides.rbegin()->second));
+  if (sides.size() > 1) {
+    const double ratio =
+        static_cast<double>(std::next(sides.begin())->second) / static_cast<double>(sides.begin()->second);
+    options.ratio = static_cast<int>(std::lround(std::clamp(ratio, 0.0, 1e6)));
+  }
+  const Grid<3> grid(options);
+  int expected = finest;
+  for (const auto& [scale, side] : sides) {
+    if (scale != expected++ || std::abs(static_cast<double>(side) / grid.side(scale - finest) - 1.0) > 1e-5)
+      throw std::invalid_argument("its scales and cell sides describe no grid of one ratio");
+  }
+  return options;
+}
+
+struct CellGroup {
+  std::vector<Gaussian<3>> gaussians;  // means about the centre of the cell
+  std::vector<float> log_odds;
+};
+using CellGroups = std::map<CellKey<3>, CellGroup>;
+
+/// The nearest cluster of the cell above, means about the centre of the parent.
+std::size_t nearestParent(Gaussian<3> child, const Vector<3>& centre_in_parent,
+                          const std::vector<Gaussian<3>>& clusters, std::size_t first, std::size_t last) {
+  child.mean += centre_in_parent;
+  std::size_t best = first;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = first; i < last; ++i) {
+    const double divergence = klDivergence<3>(child, clusters[i]);
+    if (divergence < least) {
+      least = divergence;
+      best = i;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+GaussianRecords toRecords(const GaussianMap<3>& map, std::optional<int> scale) {
+  if (scale && (*scale < 0 || *scale >= map.scales()))
+    throw std::out_of_range("scale " + std::to_string(*scale) + ": the map has the scales 0 to " +
+                            std::to_string(map.scales() - 1));
+  GaussianRecords all{{}, mapOrigin(map)};
+  for (int s = map.scales() - 1; s >= 0; --s)
+    if (!scale || *scale == s)
+      for (std::size_t i = 0; i < map.gaussianCount(s); ++i) all.records.push_back(toRecord(map, i, s, all.origin));
+  return all;
+}
+
+GaussianMap<3> fromRecords(const GaussianRecords& all) {
+  if (all.records.empty()) throw std::invalid_argument("no Gaussian in it");
+  std::map<int, float> sides;
+  for (const GaussianRecord& record : all.records) {
+    if (!(record.weight > 0.0f) || !std::isfinite(record.weight))
+      throw std::invalid_argument("a Gaussian of weight " + std::to_string(record.weight));
+    if (!(record.scale >= 0.0f && record.scale < 64.0f) || record.scale != std::floor(record.scale))
+      throw std::invalid_argument("a scale of " + std::to_string(record.scale) +
+                                  ", expected is a whole number below 64");
+    const int scale = static_cast<int>(record.scale);
+    if (sides.emplace(scale, record.cell_side).first->second != record.cell_side)
+      throw std::invalid_argument("cells of different sides at scale " + std::to_string(scale));
+  }
+  const MapOptions options = optionsOf(sides);
+  const Grid<3> grid(options);
+  const int finest = sides.begin()->first;
+
+  std::vector<CellGroups> cells(sides.size());
+  for (const GaussianRecord& record : all.records) {
+    const int scale = static_cast<int>(record.scale) - finest;
+    const double half = 0.5 * grid.side(scale);
+    Gaussian<3> gaussian;
+    const Eigen::Vector3d mean(record.mean[0], record.mean[1], record.mean[2]);
+    gaussian.mean = mean + (all.origin - grid.centre(record.cell, scale));
+    if (!gaussian.mean.allFinite() || gaussian.mean.cwiseAbs().maxCoeff() > 1.1 * half)
+      throw std::invalid_argument("a mean outside its cell " + toString<3>(record.cell));
+    gaussian.mean = gaussian.mean.cwiseMax(-half).cwiseMin(half);
+    gaussian.cov = positiveDefinite(record);
+    gaussian.weight = static_cast<double>(record.weight);
+    CellGroup& group = cells[static_cast<std::size_t>(scale)][record.cell];
+    group.gaussians.push_back(gaussian);
+    group.log_odds.push_back(record.occupancy);
+  }
+
+  const bool occupancy = std::any_of(all.records.begin(), all.records.end(),
+                                     [](const GaussianRecord& record) { return record.occupancy != kMaxOccupancy; });
+  std::vector<MapScale<3>> scales(sides.size());
+  for (int s = 0; s < options.scales; ++s) {
+    MapScale<3>& scale = scales[static_cast<std::size_t>(s)];
+    const CellGroups& groups = cells[static_cast<std::size_t>(s)];
+    std::vector<CellKey<3>> keys;
+    for (const auto& [key, group] : groups) keys.push_back(key);
+    scale.first_gaussian.push_back(0);
+    for (const std::uint32_t from : keyOrder<3>(keys, options.ratio, options.scales - 1 - s)) {
+      const CellGroup& group = groups.at(keys[from]);
+      scale.keys.push_back(keys[from]);
+      scale.gaussians.insert(scale.gaussians.end(), group.gaussians.begin(), group.gaussians.end());
+      if (occupancy) scale.log_odds.insert(scale.log_odds.end(), group.log_odds.begin(), group.log_odds.end());
+      scale.first_gaussian.push_back(static_cast<std::uint32_t>(scale.gaussians.size()));
+    }
+    if (s == 0) continue;
+    MapScale<3>& finer = scales[static_cast<std::size_t>(s) - 1];
+    scale.first_child = linkCells<3>(finer.keys, scale.keys, grid, s);
+    for (std::size_t cell = 0; cell < scale.keys.size(); ++cell)
+      for (std::size_t child = scale.first_child[cell]; child < scale.first_child[cell + 1]; ++child)
+        for (std::size_t i = finer.first_gaussian[child]; i < finer.first_gaussian[child + 1]; ++i)
+          finer.parent.push_back(static_cast<std::uint32_t>(
+              nearestParent(finer.gaussians[i], grid.centreInParent(finer.keys[child], s - 1), scale.gaussians,
+                            scale.first_gaussian[cell], scale.first_gaussian[cell + 1])));
+  }
+  for (MapScale<3>& scale : scales)
+    if (scale.gaussians.size() == scale.keys.size()) scale.first_gaussian.clear();
+  return GaussianMap<3>(options, std::move(scales));
+}
+
+}  // namespace gaussmap

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <limits>
+
+#include "io/files/text.h"
+#include "io/pcd/pcd_body.h"
+
+namespace gaussmap::detail {
+namespace {
+
+class AsciiParser {
+ public:
+  AsciiParser(const std::filesystem::path& path, const PcdHeader& header, std::string_view data)
+      : path_(path), header_(header), place_(data.data()), end_(place_ + data.size()), line_(header.data_line) {}
+
+  void parse(std::vector<AsciiColumn>& columns) {
+    for (AsciiColumn& column : columns) column.values.resize(header_.points);
+    for (std::size_t point = 0; point < header_.points; ++point) {
+      if (!skipBlankLines())
+        throw FileError(
+            path_, "the data end after " + std::to_string(point) + " of " + std::to_string(header_.points) + " points");
+      parseLine(point, columns);
+    }
+    if (skipBlankLines())
+      fail("more data than the " + std::to_string(header_.points) + " points of the header: correct POINTS and WIDTH");
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw FileError(path_, "line " + std::to_string(line_) + ": " + what);
+  }
+
+  // False at the end of the file.
+  bool skipBlankLines() {
+    while (place_ != end_ && (isBlank(*place_) || *place_ == '\n')) line_ += *place_++ == '\n';
+    return place_ != end_;
+  }
+
+  void skipBlanks() {
+    while (place_ != end_ && isBlank(*place_)) ++place_;
+  }
+  bool atLineEnd() const { return place_ == end_ || *place_ == '\n'; }
+  bool atWordEnd() const { return place_ == end_ || isBlank(*place_) || *place_ == '\n'; }
+
+  void parseLine(std::size_t point, std::vector<AsciiColumn>& columns) {
+    auto wanted = columns.begin();
+    for (std::size_t column = 0; column < header_.columns; ++column) {
+      skipBlanks();
+      if (atLineEnd()) fail(std::to_string(column) + " columns instead of " + std::to_string(header_.columns));
+      if (wanted != columns.end() && wanted->column == column) {
+        const double value = parseWord(wanted->single);
+        for (; wanted != columns.end() && wanted->column == column; ++wanted) wanted->values[point] = value;
+      } else {
+        while (!atWordEnd()) ++place_;
+      }
+    }
+    skipBlanks();
+    if (!atLineEnd()) fail("more than " + std::to_string(header_.columns) + " columns");
+  }
+
+  double parseWord(bool single) {
+    double value = 0.0;
+    float narrow = 0.0f;
+    std::from_chars_result result{};
+    if (single) result = readNumber(place_, end_, narrow);
+    const bool is_narrow = single && result.ec != std::errc::result_out_of_range;
+    // Writers of doubles leave numbers like 1e-300 where the header promises floats.
+    if (!is_narrow) result = readNumber(place_, end_, value);
+    const bool overflows = single && !is_narrow && std::abs(value) > double{std::numeric_limits<float>::max()};
+    if (overflows || result.ec == std::errc::result_out_of_range) failAtWord("does not fit the field's F 4 or F 8");
+    const bool ends_word = result.ptr == end_ || isBlank(*result.ptr) || *result.ptr == '\n';
+    if (result.ec != std::errc() || !ends_word)
+      failAtWord("is not a number (1.5, not 1,5; blanks between the columns)");
+    place_ = result.ptr;
+    return is_narrow ? double{narrow} : single ? double{static_cast<float>(value)} : value;
+  }
+
+  [[noreturn]] void failAtWord(const std::string& what) const {
+    const char* word_end = place_;
+    while (word_end != end_ && !isBlank(*word_end) && *word_end != '\n') ++word_end;
+    fail(quote({place_, static_cast<std::size_t>(word_end - place_)}) + " " + what);
+  }
+
+  const std::filesystem::path& path_;
+  const PcdHeader& header_;
+  const char* place_;
+  const char* end_;
+  std::size_t line_;
+};
+
+}  // namespace
+
+void parsePcdAscii(const std::filesystem::path& path, const PcdHeader& header, std::string_view data,
+                   std::vector<AsciiColumn>& columns) {
+  AsciiParser(path, header, data).parse(columns);
+}
+
+}  // namespace gaussmap::detail

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/pcd/pcd_header.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <unordered_set>
+
+#include "io/files/text.h"
+
+namespace gaussmap::detail {
+namespace {
+
+enum Keyword { kVersion, kFields, kSize, kType, kCount, kWidth, kHeight, kViewpoint, kPoints, kData, kKeywords };
+constexpr std::array<std::string_view, kKeywords> kNames = {"VERSION", "FIELDS", "SIZE",      "TYPE",   "COUNT",
+                                                            "WIDTH",   "HEIGHT", "VIEWPOINT", "POINTS", "DATA"};
+// Far more than any header needs, far less than a scan of a large file that is none.
+constexpr std::size_t kLongestHeader = std::size_t{1} << 20;
+
+struct Line {
+  std::size_t number = 0;  // 0: the keyword does not occur
+  std::vector<std::string_view> words;
+};
+
+class HeaderParser {
+ public:
+  HeaderParser(const std::filesystem::path& path, std::string_view bytes) : path_(path), bytes_(bytes) {}
+
+  PcdHeader parse() {
+    refuseOtherFiles();
+    collectLines();
+    readVersion();
+    readFields();
+    readSizes();
+    readTypes();
+    readCounts();
+    layOutRecord();
+    requireCoordinates();
+    readPoints();
+    readViewpoint();
+    readEncoding();
+    return std::move(header_);
+  }
+
+ private:
+  [[noreturn]] void fail(std::size_t line, const std::string& what) const {
+    throw FileError(path_, "line " + std::to_string(line) + ": " + what);
+  }
+  [[noreturn]] void failWithout(Keyword keyword) const {
+    throw FileError(path_, "the header has no line " + std::string(kNames[keyword]));
+  }
+  bool has(Keyword keyword) const { return lines_[keyword].number != 0; }
+
+  void refuseOtherFiles() const {
+    if (bytes_.empty()) throw FileError(path_, "the file is empty");
+    if (bytes_.substr(0, kByteOrderMark.size()) == kByteOrderMark)
+      fail(1, "a byte order mark stands before the header: save the file as UTF-8 without it");
+  }
+
+  void collectLines() {
+    std::string_view rest = bytes_.substr(0, kLongestHeader);
+    for (std::size_t number = 1; !rest.empty(); ++number) {
+      const std::string_view line = takeLine(rest);
+      std::vector<std::string_view> words = splitWords(line);
+      if (words.empty() || words.front().front() == '#') continue;
+      const Keyword keyword = keywordOf(words.front(), number);
+      if (has(keyword)) fail(number, "a second " + std::string(kNames[keyword]));
+      words.erase(words.begin());
+      lines_[keyword] = {number, std::move(words)};
+      if (keyword != kData) continue;
+      header_.data_offset = static_cast<std::size_t>(rest.data() - bytes_.data());
+      header_.data_line = number + 1;
+      return;
+    }
+    if (bytes_.size() > kLongestHeader) throw FileError(path_, "no DATA line in the first MiB: is this a PCD file?");
+    throw FileError(path_, "the file ends inside the header: no DATA line");
+  }
+
+  Keyword keywordOf(std::string_view word, std::size_t line) const {
+    if (word == "COLUMNS") return kFields;  // its name before 0.5
+    const auto found = std::find(kNames.begin(), kNames.end(), word);
+    if (found == kNames.end())
+      fail(line, quote(word) + " does not belong into a PCD header (VERSION, FIELDS, SIZE ...): is this a PCD file?");
+    return static_cast<Keyword>(found - kNames.begin());
+  }
+
+  std::size_t wholeNumber(Keyword keyword, std::string_view word) const {
+    std::size_t value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size())
+      fail(lines_[keyword].number, std::string(kNames[keyword]) + " is " + quote(word) + ", not a whole number" +
+                                       (error == std::errc::result_out_of_range ? " of 64 bits" : " >= 0"));
+    return value;
+  }
+
+  std::size_t singleNumber(Keyword keyword) const {
+    const Line& line = lines_[keyword];
+    if (line.words.size() != 1)
+      fail(line.number,
+           std::string(kNames[keyword]) + " has " + std::to_string(line.words.size()) + " numbers instead of 1");
+    return wholeNumber(keyword, line.words.front());
+  }
+
+  void requireOnePerField(Keyword keyword) const {
+    const std::size_t entries = lines_[keyword].words.size();
+    if (entries != header_.fields.size())
+      fail(lines_[keyword].number, std::string(kNames[keyword]) + " has " + std::to_string(entries) + " entries for " +
+                                       std::to_string(header_.fields.size()) + " FIELDS");
+  }
+
+  void readVersion() const {
+    if (!has(kVersion)) return;
+    const Line& line = lines_[kVersion];
+    double version = 0.0;
+    if (line.words.size() == 1 && parseNumber(line.words.front(), version))
+      for (const double known : {0.5, 0.6, 0.7})
+        if (std::abs(version - known) < 1e-9) return;
+    fail(line.number, "VERSION is " + quote(line.words.empty() ? "" : line.words.front()) + ": 0.5 to 0.7 are known");
+  }
+
+  void readFields() {
+    if (!has(kFields)) failWithout(kFields);
+    std::unordered_set<std::string_view> names;
+    for (const std::string_view name : lines_[kFields].words) {
+      if (name != "_" && !names.insert(name).second)
+        fail(lines_[kFields].number, "the field " + quote(name) + " occurs twice");
+      PcdField field;
+      field.name = name;
+      header_.fields.push_back(std::move(field));
+    }
+    // Before 0.6 both could be left out: everything was a float.
+    if (has(kSize) != has(kType)) failWithout(has(kSize) ? kType : kSize);
+  }
+
+  void readSizes() {
+    if (!has(kSize)) return;
+    requireOnePerField(kSize);
+    for (std::size_t i = 0; i < header_.fields.size(); ++i) {
+      header_.fields[i].size = wholeNumber(kSize, lines_[kSize].words[i]);
+      if (header_.fields[i].size == 0) fail(lines_[kSize].number, "the SIZE of " + nameOf(i) + " is 0");
+    }
+  }
+
+  void readTypes() {
+    if (!has(kType)) return;
+    requireOnePerField(kType);
+    for (std::size_t i = 0; i < header_.fields.size(); ++i) {
+      const std::string_view type = lines_[kType].words[i];
+      if (type != "I" && type != "U" && type != "F")
+        fail(lines_[kType].number, "the TYPE of " + nameOf(i) + " is " + quote(type) + ", not I, U or F");
+      header_.fields[i].type = type.front();
+    }
+  }
+
+  void readCounts() {
+    if (!has(kCount)) return;
+    requireOnePerField(kCount);
+    for (std::size_t i = 0; i < header_.fields.size(); ++i) {
+      header_.fields[i].count = wholeNumber(kCount, lines_[kCount].words[i]);
+      if (header_.fields[i].count == 0)
+        fail(lines_[kCount].number, "the COUNT of " + nameOf(i) + " is 0: leave the field out");
+    }
+  }
+
+  std::string nameOf(std::size_t field) const { return "field " + quote(header_.fields[field].name); }
+
+  void layOutRecord() {
+    for (PcdField& field : header_.fields) {
+      std::size_t bytes = 0;
+      field.offset = header_.record_size;
+      field.column = header_.columns;
+      if (__builtin_mul_overflow(field.size, field.count, &bytes) ||
+          __builtin_add_overflow(header_.record_size, bytes, &header_.record_size) ||
+          __builtin_add_overflow(header_.columns, field.count, &header_.columns))
+        fail(lines_[has(kCount) ? kCount : kSize].number, "the size of a point overflows 64 bits");
+    }
+  }
+
+  void requireCoordinates() const {
+    for (const char* const name : {"x", "y", "z"}) {
+      const PcdField* const field = header_.find(name);
+      if (!field)
+        fail(lines_[kFields].number, "no field " + quote(name) + ": a map needs x, y and z (in lower case) [m]");
+      const std::string found = std::string(name) + " is TYPE " + field->type + " SIZE " + std::to_string(field->size);
+      if (field->type != 'F')
+        fail(lines_[kType].number,
+             found + ": integer coordinates have no known unit, convert them to metres as F 4 or F 8");
+      if (field->size != 4 && field->size != 8)
+        fail(lines_[kSize].number, found + ": convert the coordinates to F 4 or F 8");
+      if (field->count != 1)
+        fail(lines_[kCount].number, std::string(name) + " has COUNT " + std::to_string(field->count) + " instead of 1");
+    }
+  }
+
+  void readPoints() {
+    if (!has(kPoints) && !has(kWidth)) failWithout(kPoints);
+    header_.points = has(kPoints) ? singleNumber(kPoints) : 0;
+    header_.height = has(kHeight) ? singleNumber(kHeight) : 1;
+    header_.width = has(kWidth) ? singleNumber(kWidth) : header_.points;
+    std::size_t product = 0;
+    if (__builtin_mul_overflow(header_.width, header_.height, &product))
+      fail(lines_[kWidth].number, "WIDTH * HEIGHT = " + std::to_string(header_.width) + " * " +
+                                      std::to_string(header_.height) + " overflows 64 bits");
+    if (!has(kPoints)) header_.points = product;
+    if (header_.points != product)
+      fail(lines_[kPoints].number, "POINTS is " + std::to_string(header_.points) + ", but WIDTH * HEIGHT = " +
+                                       std::to_string(header_.width) + " * " + std::to_string(header_.height));
+  }
+
+  void readViewpoint() {
+    if (!has(kViewpoint)) return;
+    const Line& line = lines_[kViewpoint];
+    if (line.words.size() != 7)
+      fail(line.number,
+           "VIEWPOINT has " + std::to_string(line.words.size()) + " numbers instead of tx ty tz qw qx qy qz");
+    std::array<double, 7> v{};
+    for (std::size_t i = 0; i < v.size(); ++i)
+      if (!parseNumber(line.words[i], v[i]))
+        fail(line.number, "VIEWPOINT: " + quote(line.words[i]) + " is not a number");
+    header_.viewpoint.translation = {v[0], v[1], v[2]};
+    header_.viewpoint.rotation = {v[3], v[4], v[5], v[6]};
+    header_.has_viewpoint = true;
+  }
+
+  void readEncoding() {
+    const Line& line = lines_[kData];
+    const std::string_view word = line.words.size() == 1 ? line.words.front() : "";
+    if (word == "ascii") {
+      header_.encoding = PcdEncoding::Ascii;
+    } else if (word == "binary") {
+      header_.encoding = PcdEncoding::Binary;
+    } else if (word == "binary_compressed") {
+      header_.encoding = PcdEncoding::BinaryCompressed;
+    } else {
+      fail(line.number, "DATA must be followed by ascii, binary or binary_compressed");
+    }
+  }
+
+  const std::filesystem::path& path_;
+  std::string_view bytes_;
+  std::array<Line, kKeywords> lines_;
+  PcdHeader header_;
+};
+
+}  // namespace
+
+PcdHeader parsePcdHeader(const std::filesystem::path& path, std::string_view bytes) {
+  return HeaderParser(path, bytes).parse();
+}
+
+}  // namespace gaussmap::detail

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gaussmap::detail {
+
+enum class PlyType : std::uint8_t { Int8, UInt8, Int16, UInt16, Int32, UInt32, Float32, Float64 };
+
+std::size_t sizeOf(PlyType type);  ///< [bytes]
+inline bool isWhole(PlyType type) {
+  return type < PlyType::Float32;
+}
+
+struct PlyProperty {
+  std::string name;
+  PlyType type = PlyType::Float32;  ///< of the value, or of each entry of a list
+  bool is_list = false;
+  PlyType count_type = PlyType::UInt8;  ///< of a list's length
+};
+
+struct PlyElement {
+  std::string name;
+  std::size_t count = 0;
+  std::size_t line = 0;  ///< of the header
+  std::vector<PlyProperty> properties;
+
+  /// Bytes, or words of a text, that the shortest such element has.
+  std::size_t leastSize() const;
+  std::size_t leastWords() const { return properties.size(); }
+};
+
+enum class PlyEncoding { Ascii, LittleEndian, BigEndian };
+
+struct PlyHeader {
+  PlyEncoding encoding = PlyEncoding::Ascii;
+  std::vector<PlyElement> elements;  ///< in the order of the data
+  std::size_t data_offset = 0;       ///< bytes before the data
+  std::size_t data_line = 0;         ///< number of the first line of data, the file's first line is 1
+};
+
+/// Throws FileError, with the line of the header.
+PlyHeader parsePlyHeader(const std::filesystem::path& path, std::string_view bytes);
+
+}  // namespace gaussmap::detail

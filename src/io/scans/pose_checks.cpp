@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gaussmap/io/scans/pose_checks.h"
+
+#include <algorithm>
+#include <sstream>
+
+namespace gaussmap {
+namespace {
+
+// Earth-centred coordinates end at 1e7 m: what is further away is no position in metres.
+constexpr double kFarthest = 1e8;
+constexpr const char* kWayOut =
+    "Give each scan its pose in the VIEWPOINT of its header or with --poses FILE (TUM or KITTI), or say --frame map if "
+    "the points are in the map frame already.";
+
+bool samePose(const Pose& a, const Pose& b) {
+  return a.translation == b.translation && a.rotation.coeffs() == b.rotation.coeffs();
+}
+
+std::string describe(const Pose& pose) {
+  std::ostringstream text;
+  const Eigen::Vector3d& t = pose.translation;
+  const Pose::Rotation& q = pose.rotation;
+  text << "(" << t.x() << " " << t.y() << " " << t.z() << ", quaternion w x y z " << q.w() << " " << q.x() << " "
+       << q.y() << " " << q.z() << ")";
+  return text.str();
+}
+
+using Scans = std::vector<const ScanPose*>;
+
+Scans scansAt(const Pose& pose, const std::vector<ScanPose>& scans) {
+  Scans found;
+  for (const ScanPose& scan : scans)
+    if (samePose(scan.pose, pose)) found.push_back(&scan);
+  return found;
+}
+
+/// The same cloud twice may well have the same pose.
+bool cloudsDiffer(const Scans& scans) {
+  return std::any_of(scans.begin(), scans.end(),
+                     [&scans](const ScanPose* scan) { return scan->fingerprint != scans.front()->fingerprint; });
+}
+
+void warnOfIdenticalPoses(const std::vector<ScanPose>& scans, PoseDiagnosis& diagnosis) {
+  if (scans.empty()) return;
+  const Scans like_first = scansAt(scans.front().pose, scans);
+  if (like_first.size() == scans.size()) {
+    if (cloudsDiffer(like_first))
+      diagnosis.warnings.push_back("all " + std::to_string(scans.size()) + " scans have the same pose " +
+                                   describe(scans.front().pose) + " but their points differ. " + kWayOut);
+    return;
+  }
+  const Scans at_identity = scansAt(Pose{}, scans);
+  if (at_identity.size() < 2 || !cloudsDiffer(at_identity)) return;
+  diagnosis.warnings.push_back(
+      std::to_string(at_identity.size()) + " of " + std::to_string(scans.size()) +
+      " scans have no pose of their own (the identity) but their points differ: " + at_identity[0]->path.string() +
+      ", " + at_identity[1]->path.string() + (at_identity.size() > 2 ? " ... " : ". ") + kWayOut);
+}
+
+void warnOfFarPoses(const std::vector<ScanPose>& scans, PoseDiagnosis& diagnosis) {
+  Scans far;
+  for (const ScanPose& scan : scans)
+    if (scan.pose.translation.norm() > kFarthest) far.push_back(&scan);
+  if (far.empty()) return;
+  std::ostringstream text;
+  text << far.front()->path.string() << ": the sensor is " << far.front()->pose.translation.norm()
+       << " m from the origin of the map";
+  if (far.size() > 1) text << ", and " << far.size() - 1 << " more are beyond " << kFarthest << " m";
+  text << ". Poses must be in metres.";
+  diagnosis.warnings.push_back(text.str());
+}
+
+}  // namespace
+
+ScanPose scanPose(const PcdReader& reader) {
+  return {reader.path(), reader.header().viewpoint, reader.fingerprint()};
+}
+
+PoseDiagnosis diagnosePoses(const std::vector<ScanPose>& scans) {
+  for (const ScanPose& scan : scans)
+    if (const std::string fault = poseFault(scan.pose); !fault.empty()) throw FileError(scan.path, fault);
+  PoseDiagnosis diagnosis;
+  warnOfIdenticalPoses(scans, diagnosis);
+  warnOfFarPoses(scans, diagnosis);
+  return diagnosis;
+}
+
+}  // namespace gaussmap

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gaussmap/io/scans/scan_list.h"
+
+#include <algorithm>
+#include <string_view>
+#include <system_error>
+
+namespace gaussmap {
+namespace {
+
+bool isDigit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+/// Takes the digits at the start of `rest`, without leading zeros: then the longer is the larger.
+std::string_view takeNumber(std::string_view& rest) {
+  std::size_t end = 0;
+  while (end < rest.size() && isDigit(rest[end])) ++end;
+  std::string_view digits = rest.substr(0, end);
+  rest.remove_prefix(end);
+  digits.remove_prefix(std::min(digits.find_first_not_of('0'), digits.size()));
+  return digits;
+}
+
+std::vector<std::filesystem::path> scansIn(const std::filesystem::path& directory) {
+  std::vector<std::filesystem::path> scans;
+  std::error_code error;
+  std::filesystem::directory_iterator entry(directory, error);
+  for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+    // A link to nowhere or a pipe stays in the list: its reader says what is wrong with it.
+    std::error_code ignored;
+    if (isScanName(entry->path().filename()) && !entry->is_directory(ignored)) scans.push_back(entry->path());
+  }
+  if (error) throw FileError(directory, "cannot be listed: " + error.message());
+  if (scans.empty()) throw FileError(directory, "no .pcd file in this directory");
+  std::sort(scans.begin(), scans.end(),
+            [](const auto& a, const auto& b) { return naturalLess(a.filename().string(), b.filename().string()); });
+  return scans;
+}
+
+}  // namespace
+
+bool isScanName(const std::filesystem::path& name) {
+  std::string extension = name.extension().string();
+  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return extension == ".pcd" && name.string().front() != '.';
+}
+
+bool naturalLess(const std::string& a, const std::string& b) {
+  std::string_view rest_a = a, rest_b = b;
+  while (!rest_a.empty() && !rest_b.empty()) {
+    if (isDigit(rest_a.front()) && isDigit(rest_b.front())) {
+      const std::string_view number_a = takeNumber(rest_a), number_b = takeNumber(rest_b);
+      if (number_a.size() != number_b.size()) return number_a.size() < number_b.size();
+      if (number_a != number_b) return number_a < number_b;
+    } else {
+      if (rest_a.front() != rest_b.front()) return rest_a.front() < rest_b.front();
+      rest_a.remove_prefix(1);
+      rest_b.remove_prefix(1);
+    }
+  }
+  if (rest_a.empty() != rest_b.empty()) return rest_a.empty();
+  return a < b;  // 2 and 02 differ somehow
+}
+
+std::vector<std::filesystem::path> listScans(const std::vector<std::filesystem::path>& inputs) {
+  std::vector<std::filesystem::path> scans;
+  for (const std::filesystem::path& input : inputs) {
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(input, error);
+    if (status.type() == std::filesystem::file_type::not_found) throw FileError(input, "does not exist");
+    if (error) throw FileError(input, error.message());
+    if (std::filesystem::is_directory(status)) {
+      const std::vector<std::filesystem::path> found = scansIn(input);
+      scans.insert(scans.end(), found.begin(), found.end());
+    } else {
+      scans.push_back(input);
+    }
+  }
+  return scans;
+}
+
+}  // namespace gaussmap

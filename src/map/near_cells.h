@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+
+#include "gaussmap/map/gaussian_map.h"
+
+namespace gaussmap::detail {
+
+/// So far cells are looked for, at most [cells]. It takes the cube of it.
+constexpr double kMostCells = 1000.0;
+
+/// How many cells a distance [m] is, at least one. The distance is at most kMostCells cells.
+inline std::int32_t cellsFor(double distance, double resolution) {
+  return static_cast<std::int32_t>(std::fmax(1.0, std::round(distance / resolution)));
+}
+
+/// Calls body(key) for the keys that differ from `key` by `from` to `to` cells on the axis on which they differ most;
+/// 1 <= from <= to. Keys beyond 32 bits are left out.
+template <std::size_t N, typename Body>
+void forNearKeys(const std::array<std::int32_t, N>& key, std::int32_t from, std::int32_t to, const Body& body) {
+  std::array<std::int32_t, N> near = key;
+  const auto step = [&](const auto& self, std::size_t axis, bool inside) -> void {
+    for (std::int32_t by = -to; by <= to; ++by) {
+      const bool still_inside = inside && std::abs(by) < from;
+      if (axis + 1 == N && still_inside) by = from;  // over what is too near
+      if (__builtin_add_overflow(key[axis], by, &near[axis])) continue;
+      if (axis + 1 == N)
+        body(near);
+      else
+        self(self, axis + 1, still_inside);
+    }
+  };
+  step(step, 0, true);
+}
+
+/// The same for the finest cells around one: body(cell).
+template <typename Body>
+void forNearCells(const GaussianMap<3>& map, std::size_t cell, std::int32_t from, std::int32_t to, const Body& body) {
+  forNearKeys(map.scale(0).keys[cell], from, to, [&](const CellKey<3>& near) {
+    if (const auto found = map.find(near, 0)) body(*found);
+  });
+}
+
+}  // namespace gaussmap::detail

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gaussmap/mapping/moving/scan_evidence.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "core/parallel.h"
+#include "gaussmap/mapping/scan.h"
+#include "mapping/moving/check_options.h"
+#include "mapping/moving/map_cells.h"
+#include "sensor/culling.h"
+
+namespace gaussmap {
+using namespace detail;
+
+namespace {
+
+/// What one scan says, before it is summed up in the order of the scans.
+struct OneScan {
+  std::vector<std::size_t> hits, misses;  // finest cells
+  VisitCounts counts;
+};
+
+std::vector<std::size_t> cellsOf(const Scan& scan, const GaussianMap<3>& map, double max_range) {
+  std::vector<std::size_t> cells;
+  for (const Eigen::Vector3d& point : scan.points) {
+    if (!isReturn(point) || point.norm() > max_range) continue;
+    const CellKey<3> key = map.grid().keyOf(scan.pose.rotation * point + scan.pose.translation);
+    if (!cells.empty() && map.scale(0).keys[cells.back()] == key) continue;
+    if (const auto cell = map.find(key, 0)) cells.push_back(*cell);
+  }
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  return cells;
+}
+
+OneScan lookAround(const GaussianMap<3>& map, const std::vector<Eigen::Vector3d>& means, const Scan& scan,
+                   const ScanEvidenceOptions& options) {
+  OneScan result;
+  result.hits = cellsOf(scan, map, options.max_range);
+  const std::optional<Projection> projection =
+      options.projection ? options.projection : findProjection(scan.points, scan.columns);
+  if (!projection) return result;
+  RangeImage image(*projection, scan.points);
+  if (options.no_return_is_free) image.noReturnIsFree(*options.no_return_is_free);
+  const Culling culling(image, options.sight);
+  const Eigen::Matrix3d to_sensor = scan.pose.rotation.toRotationMatrix().transpose();
+  result.counts = visitVisible(MapCells{map}, culling, scan.pose, [&](std::size_t cell) {
+    const Eigen::Vector3d mean = to_sensor * (means[cell] - scan.pose.translation);
+    if (look(image, mean, options.sight) == Sight::PassedThrough) result.misses.push_back(cell);
+  });
+  return result;
+}
+
+std::vector<Eigen::Vector3d> finestMeans(const GaussianMap<3>& map) {
+  std::vector<Eigen::Vector3d> means(map.cellCount(0));
+  for (std::size_t i = 0; i < means.size(); ++i) means[i] = map.gaussian(i, 0).mean;
+  return means;
+}
+
+}  // namespace
+
+void detail::checkOptions(const ScanEvidenceOptions& options) {
+  require(options.max_range >= 0.0, "max_range", options.max_range, "must not be negative");
+  require(options.sight.tolerance >= 0.0, "tolerance", options.sight.tolerance, "must not be negative");
+  require(options.sight.clearance >= 0.0, "clearance", options.sight.clearance, "must not be negative");
+  if (options.projection) checkProjection(*options.projection);
+  if (options.no_return_is_free) {
+    const double range = *options.no_return_is_free;
+    require(range > 0.0 && range <= std::numeric_limits<float>::max(), "no_return_is_free", range,
+            "must be positive and finite");
+  }
+}
+
+ScanEvidence gatherEvidence(const GaussianMap<3>& map, const std::vector<ScanSource>& scans,
+                            const ScanEvidenceOptions& options, const std::function<void(std::size_t)>& progress) {
+  checkOptions(options);
+  constexpr std::size_t kBatch = 16;  // scans in memory at a time
+  const std::vector<Eigen::Vector3d> means = finestMeans(map);
+  ScanEvidence evidence;
+  evidence.cells.resize(means.size());
+  for (std::size_t first = 0; first < scans.size(); first += kBatch) {
+    std::vector<OneScan> batch(std::min(kBatch, scans.size() - first));
+    parallelFor(batch.size(), options.threads, 1, [&](std::size_t i) {
+      const ScanSource& source = scans[first + i];
+      try {
+        batch[i] = lookAround(map, means, loadScan(source, options.frame), options);
+      } catch (const std::out_of_range& error) {
+        throw std::out_of_range(source.path.string() + ": " + error.what());
+      }
+    });
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      const OneScan& scan = batch[i];
+      for (const std::size_t cell : scan.hits) evidence.cells[cell].hit(static_cast<std::uint32_t>(first + i));
+      auto hit = scan.hits.begin();
+      for (const std::size_t cell : scan.misses) {
+        hit = std::lower_bound(hit, scan.hits.end(), cell);
+        if (hit == scan.hits.end() || *hit != cell) evidence.cells[cell].miss();
+      }
+      evidence.cells_tested += scan.counts.tested;
+      evidence.cells_visited += scan.counts.visited;
+    }
+    if (progress) progress(first + batch.size());
+  }
+  return evidence;
+}
+
+}  // namespace gaussmap

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "gaussmap/core/cell_moments.h"
+#include "gaussmap/core/gaussian.h"
+#include "gaussmap/mapping/moving/moving_cells.h"
+
+namespace gaussmap::detail {
+
+/// A flat piece of surface; in the plane, of a line.
+template <int D>
+struct Surface {
+  Vector<D> point;   ///< on it [m], about the place that its sums are about
+  Vector<D> normal;  ///< unit length
+  double deviation;  ///< standard deviation of its points across it [m]
+
+  /// How far a point off it may be to belong to it [m].
+  double thickness(const SharedCellOptions& options) const { return std::max(options.noise, 3.0 * deviation); }
+};
+
+/// Sums over the points of some cells, about one place.
+template <int D>
+class SurfaceSums {
+ public:
+  /// `offset`: from that place to the centre of the cell [m]; `side` of the cell [m].
+  void add(const CellMoments<D>& moments, double side, const Vector<D>& offset) {
+    if (moments.count == 0) return;
+    const auto count = static_cast<double>(moments.count);
+    const Vector<D> mean = moments.mean(side) + offset;
+    n_ += count;
+    sum_ += count * mean;
+    product_ += count * (moments.covariance(side) + mean * mean.transpose());
+  }
+
+  /// The surface that the points lie on, if it is flat: a standard deviation across of `flatness` at most [m].
+  std::optional<Surface<D>> surface(double flatness) const {
+    constexpr double kFewest = 10.0;  // points that make a surface
+    constexpr double kExtent = 0.05;  // it has a standard deviation of at least this on its second axis [m]
+    if (n_ < kFewest) return std::nullopt;
+    const Vector<D> mean = sum_ / n_;
+    const Eigen::Matrix<double, D, D> spread = product_ / n_ - mean * mean.transpose();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, D, D>> axes(spread);
+    const double across = std::sqrt(std::max(0.0, axes.eigenvalues()[0]));
+    const double along = std::sqrt(std::max(0.0, axes.eigenvalues()[1]));
+    if (across > flatness || along < kExtent) return std::nullopt;
+    return Surface<D>{mean, axes.eigenvectors().col(0), across};
+  }
+
+ private:
+  double n_ = 0.0;
+  Vector<D> sum_ = Vector<D>::Zero();
+  Matrix<D> product_ = Matrix<D>::Zero();
+};
+
+}  // namespace gaussmap::detail

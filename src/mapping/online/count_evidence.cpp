@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/parallel.h"
+#include "core/pi.h"
+#include "gaussmap/core/random.h"
+#include "mapping/online/online_state.h"
+
+namespace gaussmap::detail {
+namespace {
+
+/// A cluster that a range image is asked about, and the answer.
+struct Question {
+  std::uint32_t cell;
+  std::uint32_t cluster;
+  int scale;
+  Eigen::Vector3d mean;  // [m, map frame]: noted while the cell is at hand
+  float passed = 0.0f;   // share of its samples that beams went through
+};
+
+/// The cells as visitVisible() wants them. Notes the coarse ones that it looks into.
+template <int D>
+struct VisibleCells {
+  const OnlineCells<D>& cells;
+  const Pose& sensor;
+  const std::vector<double>& max_ranges;
+  std::vector<std::vector<std::uint32_t>>& seen;  // per scale
+  std::vector<std::uint32_t> roots;
+
+  VisibleCells(const OnlineCells<D>& all, const Pose& pose, const std::vector<double>& ranges,
+               std::vector<std::vector<std::uint32_t>>& found)
+      : cells(all), sensor(pose), max_ranges(ranges), seen(found) {
+    const int top = cells.scales() - 1;
+    for (std::uint32_t i = 0; i < cells.slots(top); ++i)
+      if (cells.cell(i, top).alive && inReach(i, top)) roots.push_back(i);
+  }
+
+  int scales() const { return cells.scales(); }
+  std::size_t rootCount() const { return roots.size(); }
+  std::uint32_t indexOf(std::size_t i, int scale) const {
+    return scale == scales() - 1 ? roots[i] : static_cast<std::uint32_t>(i);
+  }
+  Eigen::Vector3d centre(std::size_t i, int scale) const {
+    return inSpace(cells.grid().centre(cells.cell(indexOf(i, scale), scale).key, scale), sensor);
+  }
+  double radius(int scale) const { return 0.5 * std::sqrt(double(D)) * cells.grid().side(scale); }
+  bool inReach(std::uint32_t i, int scale) const {
+    const auto s = static_cast<std::size_t>(scale);
+    if (s >= max_ranges.size()) return true;
+    const Eigen::Vector3d middle = inSpace(cells.grid().centre(cells.cell(i, scale).key, scale), sensor);
+    return (middle - sensor.translation).norm() - radius(scale) <= max_ranges[s];
+  }
+  template <typename Body>
+  void forChildren(std::size_t i, int scale, const Body& body) const {
+    const std::uint32_t coarse = indexOf(i, scale);
+    seen[static_cast<std::size_t>(scale)].push_back(coarse);
+    for (const std::uint32_t child : cells.cell(coarse, scale).children)
+      if (inReach(child, scale - 1)) body(child);
+  }
+};
+
+/// B of [1]: how many pixels the ball round a cell may cover, but not more than anybody needs.
+int samplesFor(const Projection& projection, double range, double side) {
+  constexpr double kMost = 100.0;
+  double pixel = 0.0;  // its area on the unit sphere, or on the plane at z = 1
+  if (const auto* lidar = std::get_if<SphericalProjection>(&projection)) {
+    const double rows = double(lidar->row_borders.size()) - 1.0;
+    pixel = (lidar->row_borders.back() - lidar->row_borders.front()) / rows * 2.0 * kPi / lidar->columns;
+  } else {
+    const auto& camera = std::get<PlanarProjection>(projection);
+    pixel = 1.0 / (camera.fx * camera.fy);
+  }
+  const double count = 3.0 * kPi / (4.0 * pixel) * std::pow(side / range, 2);
+  return static_cast<int>(std::clamp(std::ceil(count), 1.0, kMost));
+}
+
+template <int D>
+Question ask(const OnlineCells<D>& cells, std::uint32_t i, std::uint32_t cluster, int scale, const Pose& sensor) {
+  const OnlineCell<D>& cell = cells.cell(i, scale);
+  return {i, cluster, scale,
+          inSpace(Vector<D>(cells.grid().centre(cell.key, scale) + cell.clusters[cluster].gaussian.mean), sensor)};
+}
+
+bool passes(const Eigen::Vector3d& point, const SensorView& view, const OnlineOptions& options) {
+  return look(view.image, view.toSensor(point), options.sight) == Sight::PassedThrough;
+}
+
+/// The share of a cluster's samples in its cell that the beams of a view went through.
+template <int D>
+double shareOfSamples(const OnlineCells<D>& cells, const Question& question, const SensorView& view,
+                      const OnlineOptions& options) {
+  const OnlineCell<D>& cell = cells.cell(question.cell, question.scale);
+  const Gaussian<D>& gaussian = cell.clusters[question.cluster].gaussian;
+  const Vector<D> centre = cells.grid().centre(cell.key, question.scale);
+  const double side = cells.grid().side(question.scale);
+  const int wanted = samplesFor(view.image.projection(), view.toSensor(question.mean).norm(), side);
+  Random random = Random::forPart(0, (std::uint64_t{KeyIndex::hashOf(cell.key)} << 16) + question.cluster);
+  const GaussianSampler<D> sampler(gaussian);
+  int inside = 0, passed = 0;
+  for (int i = 0; i < wanted; ++i) {
+    const Vector<D> point = sampler(random);
+    if (point.cwiseAbs().maxCoeff() > 0.5 * side) continue;
+    ++inside;
+    passed += passes(inSpace(Vector<D>(centre + point), view.pose), view, options);
+  }
+  return inside > 0 ? double(passed) / inside : double(passes(question.mean, view, options));
+}
+
+template <int D>
+void answer(const OnlineCells<D>& cells, std::vector<Question>& questions, const SensorView& view,
+            const OnlineOptions& options) {
+  const bool mean_only = options.samples == OccupancySamples::Mean;
+  parallelFor(questions.size(), options.threads, 1024, [&](std::size_t i) {
+    Question& question = questions[i];
+    question.passed = static_cast<float>(mean_only ? double(passes(question.mean, view, options))
+                                                   : shareOfSamples(cells, question, view, options));
+  });
+}
+
+template <int D>
+void count(OnlineCells<D>& cells, const std::vector<Question>& questions, const OnlineOptions& options,
+           OnlineScan<D>& scan) {
+  for (const Question& question : questions) {
+    if (!(question.passed > 0.0f)) continue;
+    miss(cells.cell(question.cell, question.scale).clusters[question.cluster], double(question.passed),
+         options.occupancy);
+    if (question.scale == 0) scan.missed.push_back(question.cell);
+  }
+}
+
+}  // namespace
+
+template <int D>
+void countHits(OnlineCells<D>& cells, const OnlineScan<D>& scan, const std::vector<std::uint32_t>& touched,
+               const OnlineOptions& options) {
+  for (const std::uint32_t finest : touched) {
+    std::uint32_t cell = finest, cluster = 0;
+    for (int scale = 0; scale < cells.scales(); ++scale) {
+      OnlineCluster<D>& at = cells.cell(cell, scale).clusters[cluster];
+      if (scale > 0 && at.evidence.hits > 0 && at.evidence.last_hit == scan.number) break;  // those above too
+      hit(at, scan.number, options.occupancy);
+      cluster = at.parent;
+      cell = cells.cell(cell, scale).parent;
+    }
+  }
+}
+
+template <int D>
+void lookBack(OnlineCells<D>& cells, OnlineScan<D>& scan, const std::deque<SensorView>& views,
+              const OnlineOptions& options) {
+  for (const SensorView& view : views) {
+    std::vector<Question> questions;
+    for (const std::uint32_t cell : scan.new_cells) questions.push_back(ask(cells, cell, 0, 0, view.pose));
+    answer(cells, questions, view, options);
+    count(cells, questions, options, scan);
+  }
+}
+
+template <int D>
+void countMisses(OnlineCells<D>& cells, OnlineScan<D>& scan, const SensorView& view, const OnlineOptions& options,
+                 OnlineStatistics& statistics) {
+  std::vector<std::vector<std::uint32_t>> seen(static_cast<std::size_t>(cells.scales()));
+  const Culling culling(view.image, options.sight);
+  const VisibleCells<D> visible(cells, view.pose, options.max_ranges, seen);
+  const auto unhit = [&](const OnlineCluster<D>& cluster) {
+    return cluster.evidence.hits == 0 || cluster.evidence.last_hit != scan.number;
+  };
+  std::vector<Question> questions;
+  const VisitCounts counts = visitVisible(visible, culling, view.pose, [&](std::size_t cell) {
+    const std::uint32_t i = visible.indexOf(cell, 0);
+    if (unhit(cells.cell(i, 0).clusters[0])) questions.push_back(ask(cells, i, 0, 0, view.pose));
+  });
+  statistics.cells_tested = counts.tested;
+  statistics.cells_visited = counts.visited;
+  for (int scale = 1; scale < cells.scales(); ++scale)
+    for (const std::uint32_t i : seen[static_cast<std::size_t>(scale)]) {
+      OnlineClusters<D>& clusters = cells.cell(i, scale).clusters;
+      if (std::none_of(clusters.begin(), clusters.end(), unhit)) continue;
+      if (options.learning_rate == LearningRate::SampleMean) cells.refresh(i, scale);
+      for (std::uint32_t c = 0; c < clusters.size(); ++c)
+        if (unhit(clusters[c])) questions.push_back(ask(cells, i, c, scale, view.pose));
+    }
+  answer(cells, questions, view, options);
+  count(cells, questions, options, scan);
+}
+
+#define GAUSSMAP_INSTANTIATE(D)                                                                                    \
+  template void countHits<D>(OnlineCells<D>&, const OnlineScan<D>&, const std::vector<std::uint32_t>&,             \
+                             const OnlineOptions&);                                                                \
+  template void lookBack<D>(OnlineCells<D>&, OnlineScan<D>&, const std::deque<SensorView>&, const OnlineOptions&); \
+  template void countMisses<D>(OnlineCells<D>&, OnlineScan<D>&, const SensorView&, const OnlineOptions&,           \
+                               OnlineStatistics&);
+GAUSSMAP_INSTANTIATE(2)
+GAUSSMAP_INSTANTIATE(3)
+#undef GAUSSMAP_INSTANTIATE
+
+}  // namespace gaussmap::detail

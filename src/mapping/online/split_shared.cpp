@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "map/near_cells.h"
+#include "mapping/moving/surface.h"
+#include "mapping/online/online_state.h"
+
+namespace gaussmap::detail {
+namespace {
+
+/// A cell beside an object that has gone, and the scans that may have seen the object in it.
+struct Shared {
+  std::uint32_t first, last;
+  float log_odds;  // of the object
+};
+using SharedCells = std::map<std::uint32_t, Shared>;  // in order: the result depends on nothing else
+
+template <int D>
+SharedCells cellsBeside(const OnlineCells<D>& cells, const std::vector<GoneCell<D>>& gone) {
+  SharedCells shared;
+  for (const GoneCell<D>& cell : gone)
+    forNearKeys(cell.key, 1, 1, [&](const CellKey<D>& key) {
+      const std::uint32_t near = cells.find(key, 0);
+      if (near == OnlineCells<D>::kNone) return;
+      const Evidence& evidence = cell.evidence;
+      Shared& entry =
+          shared.try_emplace(near, Shared{evidence.first_hit, evidence.last_hit, cell.log_odds}).first->second;
+      entry.first = std::min(entry.first, evidence.first_hit);
+      entry.last = std::max(entry.last, evidence.last_hit);
+    });
+  return shared;
+}
+
+template <int D>
+class Splitter {
+ public:
+  Splitter(OnlineCells<D>& cells, const std::deque<ScanSums<D>>& recent, const OnlineOptions& options,
+           SharedCells shared)
+      : cells_(cells), recent_(recent), options_(options), side_(cells.grid().side(0)), shared_(std::move(shared)) {}
+
+  const SharedCells& shared() const { return shared_; }
+
+  /// Calls body(scan, sums) for the scans that saw the object and points in this cell.
+  template <typename Body>
+  void forScans(std::uint32_t cell, const Shared& of, const Body& body) const {
+    for (const ScanSums<D>& scan : recent_) {
+      if (scan.number < of.first || scan.number > of.last) continue;
+      const CellMoments<D>* sums = scan.sums.find(cells_.cell(cell, 0).key);
+      if (sums != nullptr && sums->count > 0) body(scan, *sums);
+    }
+  }
+
+  /// The points of a cell from the scans that did not see the object.
+  CellMoments<D> still(std::uint32_t cell) const {
+    CellMoments<D> moments = cells_.moments(cell);
+    const auto entry = shared_.find(cell);
+    if (entry != shared_.end())
+      forScans(cell, entry->second, [&](const ScanSums<D>&, const CellMoments<D>& sums) { moments -= sums; });
+    return moments;
+  }
+
+  /// The surface in a cell as it is known from such points, there and around; about the cell's centre.
+  std::optional<Surface<D>> surfaceAt(std::uint32_t cell) const {
+    const CellKey<D> key = cells_.cell(cell, 0).key;
+    SurfaceSums<D> sums;
+    sums.add(still(cell), side_, Vector<D>::Zero());
+    std::optional<Surface<D>> surface;
+    const std::int32_t reach = cellsFor(options_.shared.reach, side_);
+    for (std::int32_t ring = 1; ring <= reach && !surface; ++ring) {
+      forNearKeys(key, ring, ring, [&](const CellKey<D>& other) {
+        const std::uint32_t near = cells_.find(other, 0);
+        if (near == OnlineCells<D>::kNone) return;
+        Vector<D> offset;
+        for (int axis = 0; axis < D; ++axis) {
+          const auto a = static_cast<std::size_t>(axis);
+          offset[axis] = side_ * (double(other[a]) - double(key[a]));
+        }
+        sums.add(still(near), side_, offset);
+      });
+      surface = sums.surface(options_.shared.flatness);
+    }
+    return surface;
+  }
+
+  /// The scans whose points in the cell lie off its surface.
+  std::vector<std::uint32_t> scansOff(std::uint32_t cell, const Shared& of) const {
+    std::vector<std::uint32_t> off;
+    bool seen = false;
+    forScans(cell, of, [&](const ScanSums<D>&, const CellMoments<D>&) { seen = true; });
+    if (!seen || still(cell).count == 0) return off;
+    const std::optional<Surface<D>> surface = surfaceAt(cell);
+    if (!surface) return off;
+    forScans(cell, of, [&](const ScanSums<D>& scan, const CellMoments<D>& sums) {
+      const double away = surface->normal.dot(sums.mean(side_) - surface->point);
+      const double across = surface->normal.dot(sums.covariance(side_) * surface->normal);
+      if (std::sqrt(across + away * away) > surface->thickness(options_.shared)) off.push_back(scan.number);
+    });
+    return off;
+  }
+
+ private:
+  const OnlineCells<D>& cells_;
+  const std::deque<ScanSums<D>>& recent_;
+  const OnlineOptions& options_;
+  const double side_;
+  const SharedCells shared_;
+};
+
+/// Takes the sums of a cell out of what is remembered of a scan.
+template <int D>
+CellMoments<D> takeFrom(MomentGrid<D>& scan, const CellKey<D>& key) {
+  const CellMoments<D>* found = scan.find(key);
+  if (found == nullptr) return {};
+  const CellMoments<D> taken = *found;
+  CellMoments<D> less;
+  less -= taken;
+  scan.add(key, less);
+  return taken;
+}
+
+/// Takes the sums of these scans out of a cell.
+template <int D>
+CellMoments<D> takeOut(OnlineCells<D>& cells, std::uint32_t cell, const std::vector<std::uint32_t>& scans,
+                       std::deque<ScanSums<D>>& recent) {
+  CellMoments<D> taken;
+  for (ScanSums<D>& scan : recent)
+    if (std::binary_search(scans.begin(), scans.end(), scan.number))
+      taken += takeFrom<D>(scan.sums, cells.cell(cell, 0).key);
+  cells.moments(cell) -= taken;
+  const Grid<D>& grid = cells.grid();
+  cells.cell(cell, 0).clusters[0].gaussian = cells.moments(cell).gaussian(grid.side(0), grid.options().noise);
+  if (cells.scales() > 1) cells.markStale(cells.cell(cell, 0).parent, 1);
+  return taken;
+}
+
+}  // namespace
+
+template <int D>
+void splitSharedCells(OnlineCells<D>& cells, const OnlineScan<D>& scan, const std::vector<GoneCell<D>>& gone,
+                      std::deque<ScanSums<D>>& recent, const OnlineOptions& options,
+                      const typename OnlineMapper<D>::Removed& removed, OnlineStatistics& statistics) {
+  if (gone.empty() || recent.empty()) return;
+  for (ScanSums<D>& seen : recent)  // when there is a cell again, these points will not be in it
+    for (const GoneCell<D>& cell : gone) takeFrom<D>(seen.sums, cell.key);
+  const Splitter<D> splitter(cells, recent, options, cellsBeside(cells, gone));
+  std::map<std::uint32_t, std::vector<std::uint32_t>> off;  // all of them before the map changes
+  for (const auto& [cell, shared] : splitter.shared()) {
+    std::vector<std::uint32_t> scans = splitter.scansOff(cell, shared);
+    if (!scans.empty()) off.emplace(cell, std::move(scans));
+  }
+  const Grid<D>& grid = cells.grid();
+  for (const auto& [cell, scans] : off) {
+    const CellMoments<D> taken = takeOut(cells, cell, scans, recent);
+    ++statistics.deleted;
+    if (!removed) continue;
+    const CellKey<D> key = cells.cell(cell, 0).key;
+    RemovedCluster<D> part{0, taken.gaussian(grid.side(0), grid.options().noise), key, taken, 0.0, {}, scan.number};
+    part.gaussian.mean += grid.centre(key, 0);
+    part.log_odds = double(splitter.shared().at(cell).log_odds);
+    for (const std::uint32_t number : scans) part.evidence.hit(number);
+    removed(part);
+  }
+}
+
+#define GAUSSMAP_INSTANTIATE(D)                                                                                        \
+  template void splitSharedCells<D>(OnlineCells<D>&, const OnlineScan<D>&, const std::vector<GoneCell<(D)>>&,          \
+                                    std::deque<ScanSums<(D)>>&, const OnlineOptions&, const OnlineMapper<D>::Removed&, \
+                                    OnlineStatistics&);
+GAUSSMAP_INSTANTIATE(2)
+GAUSSMAP_INSTANTIATE(3)
+#undef GAUSSMAP_INSTANTIATE
+
+}  // namespace gaussmap::detail

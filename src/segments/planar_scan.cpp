@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gaussmap/segments/planar_scan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "core/pi.h"
+#include "core/quantile.h"
+#include "gaussmap/core/error.h"
+#include "gaussmap/sensor/projection.h"
+
+namespace gaussmap {
+using namespace detail;
+
+namespace {
+
+constexpr double kNoReturn = std::numeric_limits<double>::quiet_NaN();
+constexpr double kMostHeight = 0.5;  // of a planar laser's points, poses tilt a little [m]
+constexpr double kGap = 1.5;         // usual steps between beams, above which one is missing
+
+struct Beam {
+  double bearing;  // NaN: not known
+  double range;    // NaN: no return
+};
+
+void checkOptions(const PlanarScanOptions& options) {
+  if (!(options.step >= 0.01 && options.step <= 180.0))
+    throw std::invalid_argument("step = " + std::to_string(options.step) + ": must be 0.01 to 180 degrees");
+  if (options.slice && !(options.z_min <= options.z_max))
+    throw std::invalid_argument("a slice from " + std::to_string(options.z_min) + " m to " +
+                                std::to_string(options.z_max) + " m: the second height must not be below the first");
+}
+
+/// The points as seen from above, and how much they differ in height.
+struct FromAbove {
+  std::vector<Beam> beams;  // one a point
+  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+};
+
+FromAbove lookFromAbove(const Scan& scan, const Pose2& pose, const PlanarScanOptions& options) {
+  FromAbove view;
+  view.beams.reserve(scan.points.size());
+  const Eigen::Matrix3d rotation = scan.pose.rotation.toRotationMatrix();
+  for (const Eigen::Vector3d& point : scan.points) {
+    view.beams.push_back({kNoReturn, kNoReturn});
+    if (!isReturn(point)) continue;
+    const Eigen::Vector3d way = rotation * point;
+    const double height = way.z() + scan.pose.translation.z(), range = std::hypot(way.x(), way.y());
+    if (options.slice && !(height >= options.z_min && height <= options.z_max)) continue;
+    if (!(range > 0.0)) continue;
+    view.lowest = std::min(view.lowest, height);
+    view.highest = std::max(view.highest, height);
+    view.beams.back() = {std::remainder(std::atan2(way.y(), way.x()) - pose.heading, 2.0 * kPi),
+                         range <= options.max_range ? range : kNoReturn};
+  }
+  return view;
+}
+
+/// Makes bearings go on beyond pi, if they all ascend, or all descend, by less than a turn. False if they do neither.
+bool unwrap(std::vector<Beam>& beams) {
+  Beam* last = nullptr;
+  double turn = 0.0;
+  int sense = 0;
+  for (Beam& beam : beams) {
+    if (std::isnan(beam.bearing)) continue;
+    if (last != nullptr) {
+      const double step = std::remainder(beam.bearing - last->bearing, 2.0 * kPi);
+      if (sense == 0) sense = step > 0.0 ? 1 : -1;
+      if (step * sense <= 0.0) return false;
+      turn += step;
+      beam.bearing = last->bearing + step;
+    }
+    last = &beam;
+  }
+  return std::abs(turn) < 2.0 * kPi;
+}
+
+/// Beams of unknown bearing get one between their neighbours; those before the first and behind the last known go.
+std::vector<Beam> fillIn(const std::vector<Beam>& beams) {
+  std::vector<Beam> filled;
+  std::size_t unknown = 0;
+  for (const Beam& beam : beams) {
+    if (std::isnan(beam.bearing)) {
+      ++unknown;
+      continue;
+    }
+    if (!filled.empty()) {
+      const double from = filled.back().bearing, step = (beam.bearing - from) / static_cast<double>(unknown + 1);
+      for (std::size_t i = 1; i <= unknown; ++i) filled.push_back({from + static_cast<double>(i) * step, kNoReturn});
+    }
+    unknown = 0;
+    filled.push_back(beam);
+  }
+  return filled;
+}
+
+/// In a planar laser's order, ascending.
+std::vector<Beam> ordered(std::vector<Beam> beams) {
+  if (unwrap(beams)) {
+    beams = fillIn(beams);
+    if (!beams.empty() && beams.front().bearing > beams.back().bearing) std::reverse(beams.begin(), beams.end());
+    return beams;
+  }
+  beams.erase(std::remove_if(beams.begin(), beams.end(), [](const Beam& beam) { return std::isnan(beam.bearing); }),
+              beams.end());
+  for (Beam& beam : beams) beam.bearing = std::remainder(beam.bearing, 2.0 * kPi);
+  std::stable_sort(beams.begin(), beams.end(), [](const Beam& a, const Beam& b) { return a.bearing < b.bearing; });
+  return beams;
+}
+
+/// The median angle between neighbouring beams.
+double usualStep(const std::vector<Beam>& beams) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < beams.size(); ++i)
+    if (beams[i].bearing > beams[i - 1].bearing) steps.push_back(beams[i].bearing - beams[i - 1].bearing);
+  if (steps.empty()) return std::numeric_limits<double>::infinity();
+  return nthSmallest(steps, steps.size() / 2);
+}
+
+void addBeam(LaserScan& scan, const Beam& beam) {
+  scan.bearings.push_back(beam.bearing);
+  scan.ranges.push_back(beam.range);
+}
+
+void addSweep(LaserScan& scan, const std::vector<Beam>& beams) {
+  const double widest = kGap * usualStep(beams);
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (i > 0 && beams[i].bearing - beams[i - 1].bearing > widest)
+      addBeam(scan, {(beams[i - 1].bearing + beams[i].bearing) / 2.0, kNoReturn});
+    addBeam(scan, beams[i]);
+  }
+}
+
+/// The nearest point in each step of the full turn.
+void addSlice(LaserScan& scan, const std::vector<Beam>& beams, double step_deg) {
+  const auto count = static_cast<std::size_t>(std::lround(360.0 / step_deg));
+  const double step = 2.0 * kPi / static_cast<double>(count);
+  std::vector<Beam> nearest;
+  for (std::size_t i = 0; i < count; ++i) nearest.push_back({(static_cast<double>(i) + 0.5) * step - kPi, kNoReturn});
+  for (const Beam& beam : beams) {
+    if (std::isnan(beam.range)) continue;
+    const double place = std::clamp((beam.bearing + kPi) / step, 0.0, static_cast<double>(count - 1));
+    Beam& best = nearest[static_cast<std::size_t>(place)];
+    if (std::isnan(best.range) || beam.range < best.range) best = beam;
+  }
+  for (const Beam& beam : nearest) addBeam(scan, beam);
+}
+
+}  // namespace
+
+LaserScan planarScan(const Scan& cloud, const PlanarScanOptions& options) {
+  checkOptions(options);
+  const Eigen::Matrix3d rotation = cloud.pose.rotation.toRotationMatrix();
+  LaserScan scan;
+  scan.max_range = std::numeric_limits<double>::infinity();  // what is farther has no range here
+  scan.pose.translation = cloud.pose.translation.head<2>();
+  scan.pose.heading = std::atan2(rotation(1, 0), rotation(0, 0));
+  const FromAbove view = lookFromAbove(cloud, scan.pose, options);
+  if (options.slice) {
+    addSlice(scan, view.beams, options.step);
+    return scan;
+  }
+  if (view.highest - view.lowest > kMostHeight)
+    throw std::invalid_argument("no scan of a planar laser: its heights in the map go from " +
+                                std::to_string(view.lowest) + " m to " + std::to_string(view.highest) +
+                                " m; take a slice of it");
+  addSweep(scan, ordered(view.beams));
+  return scan;
+}
+
+LaserScan readPlanarScan(const ScanSource& source, const PlanarScanOptions& options) {
+  checkOptions(options);
+  const Scan cloud = loadScan(source, options.frame);
+  try {
+    return planarScan(cloud, options);
+  } catch (const std::invalid_argument& error) {
+    throw FileError(source.path, error.what());
+  }
+}
+
+}  // namespace gaussmap

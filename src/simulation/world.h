@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "gaussmap/mesh/triangle_mesh.h"
+#include "mesh/mesh_tree.h"
+#include "simulation/scene.h"
+
+namespace gaussmap {
+
+/// A body that moves on a straight line without turning.
+struct MovingObject {
+  TriangleMesh mesh;         ///< where it is at time 0 [m], map frame
+  Eigen::Vector3d velocity;  ///< [m/s], map frame
+};
+
+/// What a ray met.
+enum class SurfaceLabel : std::uint32_t { Static = 0, Moving = 1 };
+
+/// A world known exactly: rays meet the very triangles of its meshes, so that a scan without noise lies on them.
+class World {
+ public:
+  struct Hit {
+    double range = 0.0;   ///< along the ray [m], > 0
+    double cosine = 1.0;  ///< between the ray and the surface's normal, >= 0
+    SurfaceLabel label = SurfaceLabel::Static;
+  };
+
+  /// Throws std::invalid_argument if a mesh has a fault (see checkMesh()) or a velocity is not finite.
+  explicit World(TriangleMesh mesh, std::vector<MovingObject> moving = {});
+
+  const TriangleMesh& mesh() const { return mesh_; }  ///< all that stands still
+  const std::vector<MovingObject>& moving() const { return moving_; }
+
+  /// First surface that the ray meets at that time [s], up to a range [m]; nothing if there is none.
+  std::optional<Hit> intersect(const Ray& ray, double time, double max_range) const;
+
+ private:
+  TriangleMesh mesh_;
+  std::vector<MovingObject> moving_;
+  detail::MeshTree tree_;
+  std::vector<detail::MeshTree> moving_trees_;
+};
+
+}  // namespace gaussmap

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "editing/thin_map.h"
+
+namespace gaussmap::test {
+using namespace detail;
+
+/// A compressed map with leaves at every scale: nothing is left under every third cell of the coarsest scale and every
+/// second one of the others.
+template <int D>
+GaussianMap<D> thinned(const GaussianMap<D>& map) {
+  std::vector<std::vector<char>> keep(static_cast<std::size_t>(map.scales()));
+  keep.back().assign(map.cellCount(map.scales() - 1), true);
+  for (int s = map.scales() - 1; s > 0; --s) {
+    const std::vector<char>& kept = keep[static_cast<std::size_t>(s)];
+    std::vector<char>& finer = keep[static_cast<std::size_t>(s) - 1];
+    const std::size_t nth = s + 1 == map.scales() ? 3 : 2;
+    for (std::size_t cell = 0; cell < kept.size(); ++cell)
+      finer.insert(finer.end(), map.childCells(cell, s).size(), kept[cell] && cell % nth != 0);
+  }
+  return thinMap(map, keep);
+}
+
+}  // namespace gaussmap::test

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gaussmap/io/scans/scan_list.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "io/files/temporary_directory.h"
+
+namespace gaussmap {
+namespace {
+
+using test::TemporaryDirectory;
+
+std::vector<std::string> namesOf(const std::vector<std::filesystem::path>& scans) {
+  std::vector<std::string> names;
+  for (const std::filesystem::path& scan : scans) names.push_back(scan.filename().string());
+  return names;
+}
+
+TEST(ScanList, SortsTheScansOfADirectoryAsPeopleCount) {
+  const TemporaryDirectory directory;
+  for (const char* const name : {"scan10.pcd", "scan2.PCD", "scan1.pcd", "notes.txt", ".hidden.pcd", "scan02b.pcd"})
+    directory.write(name, "");
+  std::filesystem::create_directory(directory.path() / "folder.pcd");
+  std::filesystem::create_directory(directory.path() / "deeper");
+  directory.write("deeper/scan3.pcd", "");
+  EXPECT_EQ(namesOf(listScans({directory.path()})),
+            (std::vector<std::string>{"scan1.pcd", "scan2.PCD", "scan02b.pcd", "scan10.pcd"}));
+}
+
+TEST(ScanList, KeepsTheOrderOfTheInputs) {
+  const TemporaryDirectory directory;
+  std::filesystem::create_directory(directory.path() / "a");
+  directory.write("a/1.pcd", "");
+  directory.write("a/2.pcd", "");
+  const std::filesystem::path last = directory.write("any.name", "");
+  EXPECT_EQ(namesOf(listScans({last, directory.path() / "a", last})),
+            (std::vector<std::string>{"any.name", "1.pcd", "2.pcd", "any.name"}));
+  EXPECT_TRUE(listScans({}).empty());
+}
+
+TEST(ScanList, RefusesWhatIsNotThere) {
+  const TemporaryDirectory directory;
+  EXPECT_THROW(listScans({directory.path() / "none.pcd"}), FileError);
+  EXPECT_THROW(listScans({directory.path()}), FileError);
+}
+
+TEST(NaturalLess, IsAnOrderOfAllNames) {
+  const std::vector<std::string> sorted = {"",      "01",     "1",      "1a",  "2",  "10",  "99999999999999999999999",
+                                           "a",     "a-1",    "a0",     "a01", "a1", "a1b", "a2",
+                                           "a2b10", "a2b011", "a2b100", "a10", "b"};
+  for (std::size_t i = 0; i < sorted.size(); ++i)
+    for (std::size_t j = 0; j < sorted.size(); ++j)
+      EXPECT_EQ(naturalLess(sorted[i], sorted[j]), i < j) << sorted[i] << " and " << sorted[j];
+}
+
+}  // namespace
+}  // namespace gaussmap
