@@ -26,10 +26,10 @@ struct CleanCommand {
 };
 
 /// DIR/<name of the scan>. Throws UsageError if two scans have the same name.
-std::vector<std::filesystem::path> outputsFor(const std::vector<ScanSource>& scans, const std::string& folder) {
+std::vector<std::filesystem::path> outputsFor(const PcdScans& scans, const std::string& folder) {
   std::map<std::filesystem::path, std::filesystem::path> taken;
   std::vector<std::filesystem::path> outputs;
-  for (const ScanSource& scan : scans) {
+  for (const PcdScan& scan : scans.files()) {
     const std::filesystem::path name = scan.path.filename();
     const auto [entry, is_new] = taken.emplace(name, scan.path);
     if (!is_new)
@@ -41,10 +41,10 @@ std::vector<std::filesystem::path> outputsFor(const std::vector<ScanSource>& sca
 }
 
 /// Everything that can be wrong with the outputs, before any work is done. Makes the directory.
-std::vector<std::filesystem::path> checkOutputs(const CleanCommand& command, const std::vector<ScanSource>& scans) {
+std::vector<std::filesystem::path> checkOutputs(const CleanCommand& command, const PcdScans& scans) {
   std::vector<std::filesystem::path> inputs;
   inputs.reserve(scans.size() + 1);
-  for (const ScanSource& scan : scans) inputs.push_back(scan.path);
+  for (const PcdScan& scan : scans.files()) inputs.push_back(scan.path);
   if (!command.input.poses.empty()) inputs.emplace_back(command.input.poses);
   std::vector<std::filesystem::path> outputs;
   if (!command.folder.empty()) outputs = outputsFor(scans, command.folder);
@@ -64,7 +64,7 @@ std::vector<std::filesystem::path> checkOutputs(const CleanCommand& command, con
   return outputs;
 }
 
-void mergeInto(PcdRecords& all, PcdRecords part, const ScanSource& scan, ScanFrame frame) {
+void mergeInto(PcdRecords& all, PcdRecords part, const PcdScan& scan, ScanFrame frame) {
   if (frame == ScanFrame::Sensor) moveToMap(part, scan.pose);
   part.width = 0;
   part.viewpoint = Pose();
@@ -99,20 +99,20 @@ void run(CleanCommand command) {
   const double start = now();
   const int threads = command.options.evidence.threads;
   const AccumulateOptions input = accumulateOptions(command.input, command.options.resolution, threads);
-  command.options.evidence.frame = input.frame;
   command.options.evidence.max_range = input.max_range;
   if (command.no_return_is_free > 0.0) command.options.evidence.no_return_is_free = command.no_return_is_free;
-  const std::vector<ScanSource> scans = findScans(command.input);
+  const auto all = std::make_shared<const PcdScans>(openScans(command.input));
+  const PcdScans& scans = *all;
   if (!command.labels.empty())
-    for (const ScanSource& scan : scans)
-      if (!PcdReader(scan.path).header().find(command.labels))
-        throw FileError(scan.path, "no field '" + command.labels + "' to score against");
+    for (std::size_t i = 0; i < scans.size(); ++i)
+      if (!scans.reader(i).header().find(command.labels))
+        throw FileError(scans.files()[i].path, "no field '" + command.labels + "' to score against");
   const bool writes = !command.folder.empty() || !command.merged.empty() || !command.removed.empty();
-  for (std::size_t i = 0; writes && i < scans.size(); ++i) checkWritable(PcdReader(scans[i].path));
+  for (std::size_t i = 0; writes && i < scans.size(); ++i) checkWritable(scans.reader(i));
   const std::vector<std::filesystem::path> outputs = checkOutputs(command, scans);
 
   ProgressBar bar;
-  const MovingPoints moving(scans, command.options, [&](MovingPointStep, std::size_t done) {
+  const MovingPoints moving(all, command.options, [&](MovingPointStep, std::size_t done) {
     bar.show({done, scans.size(), 0, 0});
   });
 
@@ -120,7 +120,7 @@ void run(CleanCommand command) {
   RemovalScore score;
   std::size_t gone = 0, points = 0;
   for (std::size_t i = 0; i < scans.size(); ++i) {
-    const PcdReader reader(scans[i].path);
+    const PcdReader reader = scans.reader(i);
     std::vector<bool> is_moving = moving.inScan(i), is_still = is_moving;
     is_still.flip();
     points += is_moving.size();
@@ -131,7 +131,7 @@ void run(CleanCommand command) {
     }
     if (!writes) continue;
     PcdRecords records = readRecords(reader);
-    if (!poseFault(records.viewpoint).empty()) records.viewpoint = scans[i].pose;  // --poses stands in for it
+    if (!poseFault(records.viewpoint).empty()) records.viewpoint = scans.files()[i].pose;  // --poses stands in for it
     const auto part = [&](const std::vector<bool>& keep, bool organised) {
       PcdRecords kept = records;
       if (!organised) kept.width = 0;
@@ -139,8 +139,8 @@ void run(CleanCommand command) {
       return kept;
     };
     if (!outputs.empty()) writePcd(outputs[i], part(is_still, true));
-    if (!command.merged.empty()) mergeInto(merged, part(is_still, false), scans[i], input.frame);
-    if (!command.removed.empty()) mergeInto(removed, part(is_moving, false), scans[i], input.frame);
+    if (!command.merged.empty()) mergeInto(merged, part(is_still, false), scans.files()[i], scans.frame());
+    if (!command.removed.empty()) mergeInto(removed, part(is_moving, false), scans.files()[i], scans.frame());
   }
   if (!command.merged.empty()) writePcd(command.merged, merged);
   if (!command.removed.empty()) writePcd(command.removed, removed);

@@ -16,9 +16,9 @@
 #include <thread>
 
 #include "gaussmap/io/pcd/pcd_reader.h"
-#include "gaussmap/io/scans/pose_checks.h"
+#include "gaussmap/io/scans/pcd_scans.h"
 #include "gaussmap/io/scans/pose_file.h"
-#include "gaussmap/io/scans/scan_list.h"
+#include "io/scans/pose_checks.h"
 
 namespace gaussmap::app {
 using namespace detail;
@@ -40,49 +40,15 @@ void warn(const std::string& text) {
   std::cerr << "gaussmap: warning: " << text << '\n';
 }
 
-namespace {
-
-/// A directory and a file in it, say.
-void warnOfScansGivenTwice(const std::vector<std::filesystem::path>& paths) {
-  std::set<std::filesystem::path> seen;
-  for (const std::filesystem::path& path : paths) {
-    std::error_code error;
-    if (!seen.insert(std::filesystem::weakly_canonical(path, error)).second && !error)
-      return warn(path.string() + " is given more than once, its points count as often");
-  }
-}
-
-ScanPose lookAt(const std::filesystem::path& path) {
-  const PcdReader reader(path);
-  if (reader.header().find("covariance") != nullptr && reader.header().find("cell_side") != nullptr)
-    throw FileError(path, "holds the Gaussians of a map, not the points of a scan");
-  return scanPose(reader);
-}
-
-}  // namespace
-
-std::vector<ScanSource> findScans(const ScanInput& input) {
-  const std::vector<std::filesystem::path> paths = listScans({input.paths.begin(), input.paths.end()});
-  warnOfScansGivenTwice(paths);
-  std::vector<ScanPose> poses;
-  poses.reserve(paths.size());
-  for (const std::filesystem::path& path : paths) poses.push_back(lookAt(path));
-  if (!input.poses.empty()) {
-    const std::vector<Pose> given = posesForScans(readPoseFile(input.poses), paths);
-    for (std::size_t i = 0; i < poses.size(); ++i) poses[i].pose = given[i];
-  }
-  const PoseDiagnosis diagnosis = diagnosePoses(poses);
-  if (input.frame == "sensor")
-    for (const std::string& warning : diagnosis.warnings) warn(warning);
-  std::vector<ScanSource> scans;
-  scans.reserve(poses.size());
-  for (const ScanPose& scan : poses) scans.push_back({scan.path, normalised(scan.pose)});
-  return scans;
+PcdScans openScans(const ScanInput& input) {
+  FoundScans found = findScans({input.paths.begin(), input.paths.end()}, input.poses,
+                               input.frame == "map" ? ScanFrame::Map : ScanFrame::Sensor);
+  for (const std::string& warning : found.warnings) warn(warning);
+  return std::move(found.scans);
 }
 
 AccumulateOptions accumulateOptions(const ScanInput& input, double resolution, int threads) {
-  return {resolution, input.frame == "map" ? ScanFrame::Map : ScanFrame::Sensor,
-          input.max_range > 0.0 ? input.max_range : std::numeric_limits<double>::infinity(), threads};
+  return {resolution, input.max_range > 0.0 ? input.max_range : std::numeric_limits<double>::infinity(), threads};
 }
 
 CLI::Validator numberBetween(double low, double high) {
@@ -167,10 +133,10 @@ void checkMapOutput(const Output& output, const std::vector<std::filesystem::pat
                      ": a map file is no PCD file, name it .gmap (gaussmap export makes a PCD file of it)");
 }
 
-std::string nameOf(const std::vector<ScanSource>& scans) {
-  if (scans.empty()) return "";
+std::string nameOf(const Scans& scans) {
+  if (scans.size() == 0) return "";
   const std::string more = scans.size() > 1 ? " and " + std::to_string(scans.size() - 1) + " more" : "";
-  return scans.front().path.string() + more;
+  return scans.info(0).name + more;
 }
 
 void printJson(const Json& json) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "gaussmap/io/gmap/map_file.h"
+#include "gaussmap/io/scans/pcd_scans.h"
 #include "gaussmap/mapping/accumulate_scans.h"
 #include "gaussmap/version.h"
 
@@ -58,8 +59,8 @@ struct ScanInput {
 };
 void addScanOptions(CLI::App& command, ScanInput& input);
 
-/// Lists the scans, gives each its pose, lets the pose doctor look at them; warnings go to stderr.
-std::vector<ScanSource> findScans(const ScanInput& input);
+/// findScans(); warnings go to stderr.
+PcdScans openScans(const ScanInput& input);
 AccumulateOptions accumulateOptions(const ScanInput& input, double resolution, int threads);
 
 /// A number from `low` to `high`; unlike CLI::Range it takes no NaN.
@@ -94,7 +95,7 @@ class ProgressBar {
 };
 
 /// "scan.pcd", or "scan.pcd and 4 more".
-std::string nameOf(const std::vector<ScanSource>& scans);
+std::string nameOf(const Scans& scans);
 
 /// To stdout. File names need not be UTF-8, as JSON must: their other bytes are replaced.
 void printJson(const Json& json);

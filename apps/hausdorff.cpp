@@ -80,8 +80,8 @@ void printHead() {
 }
 
 std::vector<Vector<3>> readPoints(const ScanInput& input, int threads) {
-  const std::vector<ScanSource> scans = findScans(input);
-  std::vector<Vector<3>> points = readScans(scans, accumulateOptions(input, 1.0, threads));
+  const PcdScans scans = openScans(input);
+  std::vector<Vector<3>> points = readPoints(scans, accumulateOptions(input, 1.0, threads));
   if (points.empty()) throw std::runtime_error(nameOf(scans) + ": no point is usable");
   return points;
 }

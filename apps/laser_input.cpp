@@ -33,7 +33,6 @@ LaserScans readLogs(const std::vector<std::string>& paths) {
 
 LaserScans readPcds(const LaserInput& input) {
   PlanarScanOptions options;
-  if (input.scans.frame == "map") options.frame = ScanFrame::Map;
   if (input.scans.max_range > 0.0) options.max_range = input.scans.max_range;
   if (!input.slice.empty()) {
     options.slice = true;
@@ -42,10 +41,11 @@ LaserScans readPcds(const LaserInput& input) {
     if (options.z_min > options.z_max) throw UsageError("--slice: the second height is below the first");
   }
   LaserScans all;
-  for (const ScanSource& source : findScans(input.scans)) {
-    all.scans.push_back(readPlanarScan(source, options));
-    all.names.push_back(source.path.filename().string());
-    all.files.push_back(source.path);
+  const PcdScans scans = openScans(input.scans);
+  all.scans = planarScans(scans, options);
+  for (const PcdScan& scan : scans.files()) {
+    all.names.push_back(scan.path.filename().string());
+    all.files.push_back(scan.path);
   }
   return all;
 }

@@ -33,7 +33,7 @@ class StatisticsTable {
   void add(std::size_t scan, const std::filesystem::path& path, const OnlineStatistics& s) {
     std::string name = path.filename().string();
     for (std::size_t i = name.find('"'); i != std::string::npos; i = name.find('"', i + 2)) name.insert(i, 1, '"');
-    text_ << scan << ",\"" << name << "\"," << s.points << ',' << s.cells_touched << ',' << s.cells_new << ','
+    text_ << scan << ",\"" << name << "\"," << s.points.accepted << ',' << s.cells_touched << ',' << s.cells_new << ','
           << s.cells_tested << ',' << s.cells_visited << ',' << s.added << ',' << s.deleted << ',' << s.update_time
           << ',' << s.image_time << ',' << s.look_back_time << ',' << s.occupancy_time << ',' << s.forget_time << ','
           << s.refine_time;
@@ -55,20 +55,6 @@ class StatisticsTable {
   std::size_t scales_;
   std::ostringstream text_;
 };
-
-/// Counts where the points of a scan go; those beyond the range become NaN.
-void sortOut(Scan& scan, const AccumulateOptions& reading, PointCounts& counts) {
-  for (Eigen::Vector3d& point : scan.points) {
-    const bool finite = point.allFinite(), far = finite && point.norm() > reading.max_range;
-    const bool at_sensor = finite && !isReturn(point);
-    ++counts.read;
-    counts.non_finite += !finite;
-    counts.at_sensor += at_sensor;
-    counts.beyond_range += far;
-    counts.accepted += finite && !far && !at_sensor;
-    if (far) point.setConstant(std::numeric_limits<double>::quiet_NaN());
-  }
-}
 
 }  // namespace
 
@@ -127,10 +113,11 @@ void checkOnline(const OnlineInput& input, const BudgetInput& budget, const Outp
   }
 }
 
-OnlineResult mapOnline(const std::vector<ScanSource>& scans, const OnlineInput& input, const MapOptions& map,
+OnlineResult mapOnline(const Scans& scans, const OnlineInput& input, const MapOptions& map,
                        const AccumulateOptions& reading, const BudgetInput& budget) {
   OnlineOptions options = input.options;
   options.map = map;
+  options.max_range = reading.max_range;
   options.threads = reading.threads;
   options.budget = budget.budget;
   options.method = budget.method == "insert" ? RefineMethod::Insert : RefineMethod::Agglomerate;
@@ -145,15 +132,15 @@ OnlineResult mapOnline(const std::vector<ScanSource>& scans, const OnlineInput& 
   StatisticsTable table(map.scales);
   ProgressBar bar;
   for (std::size_t i = 0; i < scans.size(); ++i) {
-    Scan scan = loadScan(scans[i], reading.frame);
-    sortOut(scan, reading, result.counts);
+    const ScanInfo info = scans.info(i);
     OnlineStatistics statistics;
     try {
-      statistics = mapper.add(scan);
+      statistics = mapper.add(scans.read(i));
     } catch (const std::out_of_range& error) {
-      throw std::out_of_range(scans[i].path.string() + ": " + error.what());
+      throw std::out_of_range(info.name + ": " + error.what());
     }
-    table.add(i, scans[i].path, statistics);
+    result.counts += statistics.points;
+    table.add(i, info.name, statistics);
     result.deleted += statistics.deleted;
     bar.show({i + 1, scans.size(), result.counts.accepted, 0});
   }

@@ -32,7 +32,7 @@ struct OnlineResult {
 };
 
 /// Takes in the scans one by one; writes the statistics and the deleted clusters where they are asked for.
-OnlineResult mapOnline(const std::vector<ScanSource>& scans, const OnlineInput& input, const MapOptions& map,
+OnlineResult mapOnline(const Scans& scans, const OnlineInput& input, const MapOptions& map,
                        const AccumulateOptions& reading, const BudgetInput& budget);
 
 }  // namespace gaussmap::app

@@ -6,7 +6,7 @@
 #include "budget.h"
 #include "common.h"
 #include "gaussmap/io/gmap/build_map_file.h"
-#include "gaussmap/io/scans/scan_list.h"
+#include "gaussmap/io/scans/pcd_scans.h"
 #include "gaussmap/mapping/build.h"
 #include "online.h"
 #include "scan_report.h"
@@ -39,7 +39,7 @@ struct Written {
   Json scales = Json::array();
 };
 
-Built buildAtOnce(const Pcd2mapOptions& options, const std::vector<ScanSource>& scans, const AccumulateOptions& reading,
+Built buildAtOnce(const Pcd2mapOptions& options, const Scans& scans, const AccumulateOptions& reading,
                   MapMetadata& metadata) {
   ProgressBar bar;
   AccumulatedScans accumulated =
@@ -51,7 +51,7 @@ Built buildAtOnce(const Pcd2mapOptions& options, const std::vector<ScanSource>& 
   return {refineWithin(std::move(map), options.budget, metadata, historyOf(scans, counts)), counts};
 }
 
-Built buildOnline(const Pcd2mapOptions& options, const std::vector<ScanSource>& scans, const AccumulateOptions& reading,
+Built buildOnline(const Pcd2mapOptions& options, const Scans& scans, const AccumulateOptions& reading,
                   MapMetadata& metadata) {
   OnlineResult result = mapOnline(scans, options.online, options.map, reading, options.budget);
   requirePoints(result.counts, scans);
@@ -75,8 +75,7 @@ void checkMemory(const Pcd2mapOptions& options) {
                      " bytes are needed");
 }
 
-Written buildWithinMemory(const Pcd2mapOptions& options, const std::vector<ScanSource>& scans,
-                          const AccumulateOptions& reading) {
+Written buildWithinMemory(const Pcd2mapOptions& options, const Scans& scans, const AccumulateOptions& reading) {
   BuildMapFileOptions building;
   building.max_memory = amountOf("--max-memory", options.max_memory, true);
   building.refine = options.budget.refine;
@@ -108,8 +107,7 @@ Written buildWithinMemory(const Pcd2mapOptions& options, const std::vector<ScanS
   return written;
 }
 
-Written buildInMemory(const Pcd2mapOptions& options, const std::vector<ScanSource>& scans,
-                      const AccumulateOptions& reading) {
+Written buildInMemory(const Pcd2mapOptions& options, const Scans& scans, const AccumulateOptions& reading) {
   MapMetadata metadata;
   const Built built = options.online.on ? buildOnline(options, scans, reading, metadata)
                                         : buildAtOnce(options, scans, reading, metadata);
@@ -133,7 +131,7 @@ void pcd2map(const Pcd2mapOptions& options) {
   checkMemory(options);
   const double start = now();
 
-  const std::vector<ScanSource> scans = findScans(options.input);
+  const PcdScans scans = openScans(options.input);
   const AccumulateOptions reading =
       accumulateOptions(options.input, options.map.resolution, options.budget.refine.threads);
   const Written written =

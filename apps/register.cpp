@@ -4,10 +4,10 @@
 #include <cstdio>
 
 #include "common.h"
+#include "gaussmap/core/scans.h"
 #include "gaussmap/io/pcd/map_pcd.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
-#include "gaussmap/io/scans/scan_list.h"
-#include "gaussmap/mapping/scan.h"
+#include "gaussmap/io/scans/pcd_scans.h"
 #include "gaussmap/registration/registration.h"
 #include "simulation/trajectory.h"
 
@@ -71,7 +71,7 @@ void print(const std::filesystem::path& scan, const RegistrationResult& result) 
 RegistrationResult registerFile(const std::filesystem::path& path, const GaussianMap<3>& map, const Pose& guess,
                                 const RegistrationOptions& options) {
   if (isMap(path)) return registerMap(loadAnyMap(path), map, guess, options);
-  return registerScan(loadScan({path, Pose()}).points, map, guess, options);
+  return registerScan(PcdScans({{path, Pose()}}).read(0).points, map, guess, options);
 }
 
 void run(const RegisterCommand& command) {

@@ -6,7 +6,7 @@
 namespace gaussmap::app {
 using namespace detail;
 
-void requirePoints(const PointCounts& counts, const std::vector<ScanSource>& scans) {
+void requirePoints(const PointCounts& counts, const Scans& scans) {
   if (counts.accepted > 0) return;
   throw std::runtime_error(nameOf(scans) + ": of " + std::to_string(counts.read) + " points none is usable: " +
                            std::to_string(counts.non_finite) + " are not finite, " + std::to_string(counts.at_sensor) +
@@ -21,12 +21,12 @@ Json countsJson(const PointCounts& counts) {
           {"beyond_range", counts.beyond_range}};
 }
 
-Json historyOf(const std::vector<ScanSource>& scans, const PointCounts& counts) {
+Json historyOf(const Scans& scans, const PointCounts& counts) {
   return {
       {"command", "pcd2map"}, {"version", GAUSSMAP_VERSION}, {"scans", scans.size()}, {"points", countsJson(counts)}};
 }
 
-std::string summaryOf(const std::vector<ScanSource>& scans, const PointCounts& counts) {
+std::string summaryOf(const Scans& scans, const PointCounts& counts) {
   std::ostringstream text;
   text << scans.size() << (scans.size() == 1 ? " scan, " : " scans, ") << counts.accepted << " points";
   if (counts.accepted < counts.read)

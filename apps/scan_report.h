@@ -10,14 +10,14 @@
 namespace gaussmap::app {
 
 /// Throws unless some point was usable, and says what became of them.
-void requirePoints(const PointCounts& counts, const std::vector<ScanSource>& scans);
+void requirePoints(const PointCounts& counts, const Scans& scans);
 
 Json countsJson(const PointCounts& counts);
 
 /// The step of the history that scans make.
-Json historyOf(const std::vector<ScanSource>& scans, const PointCounts& counts);
+Json historyOf(const Scans& scans, const PointCounts& counts);
 
 /// "20 scans, 2203027 points (left out: ...)".
-std::string summaryOf(const std::vector<ScanSource>& scans, const PointCounts& counts);
+std::string summaryOf(const Scans& scans, const PointCounts& counts);
 
 }  // namespace gaussmap::app

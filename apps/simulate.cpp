@@ -10,7 +10,7 @@
 #include "gaussmap/io/export/segment_files.h"
 #include "gaussmap/io/pcd/pcd_writer.h"
 #include "gaussmap/io/ply/ply.h"
-#include "gaussmap/io/scans/scan_list.h"
+#include "io/scans/scan_names.h"
 
 namespace gaussmap::app {
 using namespace detail;

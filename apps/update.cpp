@@ -41,7 +41,7 @@ void updateFromScans(const UpdateInput& input, const ScanInput& scan_input, cons
   const double start = now();
   const MapOptions map = growingMapOptions<3>(input.map);
   const Recorded recorded = recordedIn(loadMetadata(input.map));
-  const std::vector<ScanSource> scans = findScans(scan_input);
+  const PcdScans scans = openScans(scan_input);
   AccumulatedScans accumulated{MomentGrid<3>(map.resolution), {}};
   {
     ProgressBar bar;

@@ -78,8 +78,8 @@ bool isSegmentMap(const std::string& path) {
 
 std::vector<Vector<3>> readCloud(const ScanInput& input) {
   if (input.paths.empty()) return {};
-  const std::vector<ScanSource> scans = findScans(input);
-  std::vector<Vector<3>> points = readScans(scans, accumulateOptions(input, 1.0, 0));
+  const PcdScans scans = openScans(input);
+  std::vector<Vector<3>> points = readPoints(scans, accumulateOptions(input, 1.0, 0));
   if (points.empty()) throw std::runtime_error(nameOf(scans) + ": no point is usable");
   return points;
 }

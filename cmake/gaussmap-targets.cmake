@@ -18,6 +18,8 @@ function(gaussmap_fast_build target)
   endif()
   target_precompile_headers(${target} PRIVATE ${gaussmap_precompiled} ${ARGN})
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  # g++ takes the anonymous namespaces of the sources that a unity source includes for those of headers.
+  target_compile_options(${target} PRIVATE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-subobject-linkage>)
   get_target_property(sources ${target} SOURCES)
   foreach(source ${sources})
     get_filename_component(folder ${source} ABSOLUTE)

@@ -1,29 +1,51 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# What tools can see without running anything: clang-format, cppcheck, clang-tidy.
-# Usage: test/lint.sh [--quick | FILE...]
-#   --quick   without clang-tidy, which takes as long as a build
-#   FILE...   clang-tidy looks at these sources only; without, at all of the library and the command line
+# What tools see without running anything: layers, public headers, clang-format, cppcheck, clang-tidy.
+# Usage: test/lint.sh [--quick | --changed [REV] | FILE...]
+#   --quick          without clang-tidy, which takes as long as a build
+#   --changed [REV]  clang-tidy checks the sources that differ from REV only (default: five commits ago)
+#   FILE...          clang-tidy checks these sources only; without, all of the library and the command line
 set -euo pipefail
 cd "$(dirname "$0")/.."
-[[ ${1:-} != -* || ${1:-} == --quick ]] || { echo "usage: test/lint.sh [--quick | FILE...]" >&2; exit 2; }
+case "${1:-}" in
+  --quick | --changed | [!-]* | "") ;;
+  *) sed -n '4,7p' "$0" >&2; exit 2 ;;
+esac
 ./cmake/install-deps.sh --checks
+
+python3 test/layers.py
+
+# Every public header compiles alone.
+headers=include/gaussmap
+flags=(-std=c++17 -fsyntax-only -x c++ -I include)
+read -ra system < <(pkg-config --cflags-only-I eigen3 pcl_common | sed 's/-I/-isystem /g')
+find "$headers" -name '*.h' -print0 | sort -z | xargs -0 -P 2 -I{} \
+  sh -c 'g++ "$@" "$0" || { echo "$0: does not compile alone" >&2; exit 255; }' {} "${flags[@]}" "${system[@]}"
+echo "public headers: each compiles alone"
 
 mapfile -t all < <(git ls-files '*.cpp' '*.h' '*.hpp')
 clang-format --dry-run -Werror "${all[@]}"
-echo "clang-format: ${#all[@]} files as they should be"
+echo "clang-format: ${#all[@]} files, formatted"
 
 cppcheck --std=c++17 --language=c++ --enable=warning,performance,portability --inline-suppr \
   --suppressions-list=.cppcheck --error-exitcode=1 -I include -I src --quiet -j 2 src apps include
 echo "cppcheck: clean"
 [[ ${1:-} != --quick ]] || exit 0
 
-folder=build/lint
-launcher=$(command -v ccache || true)
-cmake -S . -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_C_COMPILER=clang \
-  -DCMAKE_CXX_COMPILER_LAUNCHER="$launcher" -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DGAUSSMAP_BUILD_PCL=OFF \
-  -DGAUSSMAP_BUILD_VIEWER=OFF -DGAUSSMAP_BUILD_TESTS=OFF >/dev/null
-sources=("$@")
-((${#sources[@]} > 0)) || mapfile -t sources < <(git ls-files 'src/*.cpp' 'apps/*.cpp' ':!src/pcl' ':!src/viewer' ':!apps/view_main.cpp')
-printf '%s\0' "${sources[@]}" | xargs -0 -P 2 -n 4 clang-tidy -p "$folder" --quiet --warnings-as-errors='*' 2>/dev/null
+selection=('src/*.cpp' 'apps/*.cpp' ':!src/pcl' ':!src/viewer' ':!apps/view_main.cpp')
+case "${1:-}" in
+  --changed)
+    base=${2:-$(git rev-list --max-count=6 HEAD | tail -n 1)}
+    mapfile -t sources < <(git diff --name-only --diff-filter=d "$base" -- "${selection[@]}")
+    ;;
+  "") mapfile -t sources < <(git ls-files "${selection[@]}") ;;
+  *) sources=("$@") ;;
+esac
+if ((${#sources[@]} > 0)); then
+  folder=build/lint
+  cmake -S . -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_C_COMPILER=clang \
+    -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DGAUSSMAP_FAST_BUILD=OFF -DGAUSSMAP_BUILD_PCL=OFF -DGAUSSMAP_BUILD_VIEWER=OFF \
+    -DGAUSSMAP_BUILD_TESTS=OFF >/dev/null
+  printf '%s\0' "${sources[@]}" | xargs -0 -P 2 -n 4 clang-tidy -p "$folder" --quiet --warnings-as-errors='*' 2>/dev/null
+fi
 echo "clang-tidy: ${#sources[@]} sources, clean"

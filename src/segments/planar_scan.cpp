@@ -170,14 +170,18 @@ LaserScan planarScan(const Scan& cloud, const PlanarScanOptions& options) {
   return scan;
 }
 
-LaserScan readPlanarScan(const ScanSource& source, const PlanarScanOptions& options) {
+std::vector<LaserScan> planarScans(const Scans& scans, const PlanarScanOptions& options) {
   checkOptions(options);
-  const Scan cloud = loadScan(source, options.frame);
-  try {
-    return planarScan(cloud, options);
-  } catch (const std::invalid_argument& error) {
-    throw FileError(source.path, error.what());
+  std::vector<LaserScan> sweeps;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    const Scan cloud = scans.read(i);
+    try {
+      sweeps.push_back(planarScan(cloud, options));
+    } catch (const std::invalid_argument& error) {
+      throw FileError(scans.info(i).name, error.what());
+    }
   }
+  return sweeps;
 }
 
 }  // namespace gaussmap

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/quantile.h"
+#include "gaussmap/core/scans.h"
 #include "gaussmap/sensor/projection.h"
 #include "sensor/angles.h"
 

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "gaussmap/core/scans.h"
 #include "sensor/angles.h"
 
 namespace gaussmap {

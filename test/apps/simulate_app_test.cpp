@@ -6,8 +6,8 @@
 #include "apps/app_fixture.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
 #include "gaussmap/io/ply/ply.h"
+#include "gaussmap/io/scans/pcd_scans.h"
 #include "gaussmap/io/scans/pose_file.h"
-#include "gaussmap/io/scans/scan_list.h"
 #include "mesh/mesh_distance.h"
 
 namespace gaussmap::test {

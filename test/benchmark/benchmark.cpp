@@ -7,7 +7,7 @@
 #include <random>
 
 #include "gaussmap/io/pcd/pcd_reader.h"
-#include "gaussmap/io/scans/scan_list.h"
+#include "gaussmap/io/scans/pcd_scans.h"
 #include "gaussmap/mapping/accumulate_scans.h"
 #include "parts.h"
 #include "street_scene.h"
@@ -25,9 +25,9 @@ Cloud::Ptr cloudOf(const std::vector<Vector<3>>& points) {
 namespace {
 
 Cloud::Ptr scansIn(const std::filesystem::path& folder) {
-  std::vector<ScanSource> scans;
+  std::vector<PcdScan> scans;
   for (const auto& path : listScans({folder})) scans.push_back({path, normalised(PcdReader(path).header().viewpoint)});
-  return cloudOf(readScans(scans, {}));
+  return cloudOf(readPoints(PcdScans(scans), {}));
 }
 
 Cloud::Ptr shuffled(const Cloud& cloud) {

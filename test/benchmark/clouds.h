@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "gaussmap/io/scans/scan_list.h"
+#include "gaussmap/io/scans/pcd_scans.h"
 #include "simulation/simulation.h"
 
 namespace gaussmap::benchmark {

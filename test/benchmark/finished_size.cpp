@@ -13,14 +13,14 @@
 #include <numeric>
 
 #include "gaussmap/core/random.h"
+#include "gaussmap/core/scans.h"
 #include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
 #include "gaussmap/io/ply/ply.h"
-#include "gaussmap/io/scans/scan_list.h"
+#include "gaussmap/io/scans/pcd_scans.h"
 #include "gaussmap/map/sampling.h"
 #include "gaussmap/mapping/build.h"
 #include "gaussmap/mapping/refine.h"
-#include "gaussmap/mapping/scan.h"
 #include "gaussmap/sensor/projection.h"
 #include "mesh/mesh_distance.h"
 
@@ -104,16 +104,17 @@ double compare(const std::vector<Scan>& scans, const MeshDistance& truth, bool r
 }
 
 void run(const fs::path& folder) {
-  std::vector<ScanSource> sources;
+  std::vector<PcdScan> sources;
   std::vector<Scan> scans;
   for (const fs::path& path : listScans({folder / "scans"})) {
     sources.push_back({path, normalised(PcdReader(path).header().viewpoint)});
-    scans.push_back(loadScan(sources.back()));
+    scans.push_back(PcdScans({sources.back()}).read(0));
   }
   const MeshDistance truth(readPly(folder / "truth.ply"));
   RefineOptions refining;
   refining.budget = 2.0;
-  const GaussianMap<3> map = refine<3>(build<3>(accumulateScans(sources, {}).moments, MapOptions()), refining);
+  const GaussianMap<3> map =
+      refine<3>(build<3>(accumulateScans(PcdScans(sources), {}).moments, MapOptions()), refining);
 
   std::string work = (fs::temp_directory_path() / "gaussmap-finished-XXXXXX").string();
   if (::mkdtemp(work.data()) == nullptr) throw std::runtime_error("no temporary directory");

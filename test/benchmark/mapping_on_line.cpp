@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <octomap/octomap.h>
 
+#include "gaussmap/core/scans.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
-#include "gaussmap/io/scans/scan_list.h"
+#include "gaussmap/io/scans/pcd_scans.h"
 #include "gaussmap/mapping/online/online_mapper.h"
-#include "gaussmap/mapping/scan.h"
 #include "measure.h"
 #include "parts.h"
 #include "simulation/simulation.h"
@@ -28,7 +28,7 @@ std::vector<Scan> simulatedScans() {
 std::vector<Scan> scansIn(const std::filesystem::path& folder) {
   std::vector<Scan> scans;
   for (const auto& path : listScans({folder}))
-    scans.push_back(loadScan({path, normalised(PcdReader(path).header().viewpoint)}));
+    scans.push_back(PcdScans({{path, normalised(PcdReader(path).header().viewpoint)}}).read(0));
   return scans;
 }
 

@@ -13,7 +13,7 @@
 
 #include "evaluation/removal_score.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
-#include "gaussmap/io/scans/scan_list.h"
+#include "gaussmap/io/scans/pcd_scans.h"
 #include "gaussmap/mapping/moving/moving_points.h"
 #include "gaussmap/mapping/online/online_mapper.h"
 
@@ -27,7 +27,7 @@ double now() {
 }
 
 struct Sequence {
-  std::vector<ScanSource> sources;
+  std::vector<PcdScan> sources;
   std::vector<Scan> scans;
   std::vector<std::vector<double>> labels;  // 0 = static
 
@@ -35,7 +35,7 @@ struct Sequence {
     for (const auto& path : listScans({folder})) {
       const PcdReader reader(path);
       sources.push_back({path, normalised(reader.header().viewpoint)});
-      scans.push_back(loadScan(sources.back()));
+      scans.push_back(PcdScans({sources.back()}).read(0));
       labels.emplace_back(scans.back().points.size(), 0.0);
       if (reader.header().find("label")) labels.back() = reader.column("label");
     }

@@ -8,7 +8,7 @@
 
 #include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
-#include "gaussmap/io/scans/scan_list.h"
+#include "gaussmap/io/scans/pcd_scans.h"
 #include "gaussmap/mapping/accumulate_scans.h"
 
 using namespace gaussmap;
@@ -19,15 +19,14 @@ int main(int argc, char** argv) {
     return 2;
   }
   const GaussianMapOctree map = loadMap<3>(argv[1]);
-  std::vector<ScanSource> scans;
+  std::vector<PcdScan> scans;
   for (const auto& path : listScans({argv[2]})) scans.push_back({path, normalised(PcdReader(path).header().viewpoint)});
   AccumulateOptions options;
-  options.frame = argc == 4 ? ScanFrame::Map : ScanFrame::Sensor;
 
   // Points within half a lattice step of a border may stand on either side of it: there the map decides.
   const long double side = static_cast<long double>(map.options().resolution), half_step = 0x1.0p-17L;
   std::map<CellKey<3>, std::vector<Vector<3>>> cells;
-  for (const Vector<3>& point : readScans(scans, options)) {
+  for (const Vector<3>& point : readPoints(PcdScans(scans, argc == 4 ? ScanFrame::Map : ScanFrame::Sensor), options)) {
     CellKey<3> key;
     for (int axis = 0; axis < 3; ++axis) {
       const long double exact = static_cast<long double>(point(axis)) / side;

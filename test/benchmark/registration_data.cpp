@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "gaussmap/core/random.h"
+#include "gaussmap/core/scans.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
-#include "gaussmap/io/scans/scan_list.h"
-#include "gaussmap/mapping/scan.h"
+#include "gaussmap/io/scans/pcd_scans.h"
 #include "simulation/simulation.h"
 
 namespace gaussmap::benchmark {
@@ -52,8 +52,8 @@ std::vector<ScanPair> filePairs(const std::filesystem::path& directory, std::siz
     const auto& a = files[i];
     const auto& b = files[i + step];
     pairs.push_back(
-        {a.stem().string() + "-" + b.stem().string(), returnsOf(loadScan({a, Pose()}).points),
-         returnsOf(loadScan({b, Pose()}).points),
+        {a.stem().string() + "-" + b.stem().string(), returnsOf(PcdScans({{a, Pose()}}).read(0).points),
+         returnsOf(PcdScans({{b, Pose()}}).read(0).points),
          relative(normalised(PcdReader(a).header().viewpoint), normalised(PcdReader(b).header().viewpoint))});
   }
   return pairs;

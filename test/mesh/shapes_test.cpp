@@ -7,8 +7,8 @@
 
 #include "gaussmap/core/random.h"
 #include "mesh/mesh_distance.h"
-#include "simulation/scene.h"
 #include "mesh/mesh_measures.h"
+#include "simulation/scene.h"
 
 namespace gaussmap {
 using namespace detail;

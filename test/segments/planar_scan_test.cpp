@@ -7,6 +7,7 @@
 
 #include "gaussmap/core/random.h"
 #include "gaussmap/io/pcd/pcd_writer.h"
+#include "gaussmap/io/scans/pcd_scans.h"
 #include "io/files/hostile_files.h"
 #include "io/files/temporary_directory.h"
 
@@ -22,10 +23,11 @@ Vector<3> polar(double degrees, double range, double height = 0.0) {
 
 class PlanarScanTest : public testing::Test {
  protected:
-  LaserScan read(const std::vector<Vector<3>>& points, const Pose& pose = {}, const PlanarScanOptions& options = {}) {
+  LaserScan read(const std::vector<Vector<3>>& points, const Pose& pose = {}, const PlanarScanOptions& options = {},
+                 ScanFrame frame = ScanFrame::Sensor) {
     const std::filesystem::path path = directory_.path() / "scan.pcd";
     writePcd(path, points, PcdPrecision::Double, pose);
-    return readPlanarScan({path, pose}, options);
+    return planarScans(PcdScans({{path, pose}}, frame), options).front();
   }
   static void expectBeams(const LaserScan& scan, const std::vector<double>& degrees,
                           const std::vector<double>& ranges) {
@@ -98,9 +100,8 @@ TEST_F(PlanarScanTest, LeavesOutTheRangesBeyondTheLimit) {
 
 TEST_F(PlanarScanTest, TakesPointsThatAreInTheMapFrameAlready) {
   const Pose pose = posed(1, 2, 0, 90);
-  PlanarScanOptions options;
-  options.frame = ScanFrame::Map;
-  const LaserScan scan = read({Vector<3>(1, 2, 0) + polar(90, 3), Vector<3>(1, 2, 0) + polar(91, 4)}, pose, options);
+  const LaserScan scan =
+      read({Vector<3>(1, 2, 0) + polar(90, 3), Vector<3>(1, 2, 0) + polar(91, 4)}, pose, {}, ScanFrame::Map);
   expectBeams(scan, {0, 1}, {3, 4});
 }
 

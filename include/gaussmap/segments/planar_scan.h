@@ -3,15 +3,13 @@
 
 #include <limits>
 
-#include "gaussmap/mapping/accumulate_scans.h"
-#include "gaussmap/mapping/scan.h"
+#include "gaussmap/core/scans.h"
 #include "gaussmap/segments/laser_scan.h"
 
 namespace gaussmap {
 
 /// What of a cloud of points becomes the sweep of a planar laser.
 struct PlanarScanOptions {
-  ScanFrame frame = ScanFrame::Sensor;
   bool slice = false;               ///< the cloud is three-dimensional: only points with z_min <= z <= z_max count
   double z_min = 0.0, z_max = 0.0;  ///< heights in the map frame [m]
   double step = 0.5;                ///< of a slice: degrees of bearing in which only the nearest point counts
@@ -25,10 +23,10 @@ struct PlanarScanOptions {
 /// half usual steps apart, a beam without a return stands between them: the file left it out. A slice has one beam for
 /// each `step` of the full turn: the nearest point in it, or no return. Throws std::invalid_argument without a slice
 /// for points that lie in no plane (more than 0.5 m apart in height), and unless z_min <= z_max and 0.01 <= step <=
-/// 180. The frame of the options is not used: see Scan.
+/// 180.
 LaserScan planarScan(const Scan& cloud, const PlanarScanOptions& options = {});
 
-/// The same for a PCD file. Throws FileError for a damaged file or one without a plane.
-LaserScan readPlanarScan(const ScanSource& source, const PlanarScanOptions& options = {});
+/// The same for all scans, in their order. Throws FileError, naming the scan, for a damaged file or points in no plane.
+std::vector<LaserScan> planarScans(const Scans& scans, const PlanarScanOptions& options = {});
 
 }  // namespace gaussmap

@@ -25,12 +25,6 @@ struct PlanarProjection {
 
 using Projection = std::variant<SphericalProjection, PlanarProjection>;
 
-/// True for a point [m, sensor frame] that was measured: finite, and not the sensor's own place (as some drivers mark
-/// 'no return').
-inline bool isReturn(const Eigen::Vector3d& point) {
-  return point.allFinite() && !point.isZero(0.0);
-}
-
 struct Pixel {
   int row = 0;
   int column = 0;

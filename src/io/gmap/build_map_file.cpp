@@ -267,7 +267,7 @@ class Builder {
 
 }  // namespace
 
-BuiltMapFile buildMapFile(const std::vector<ScanSource>& scans, const AccumulateOptions& reading, const MapOptions& map,
+BuiltMapFile buildMapFile(const Scans& scans, const AccumulateOptions& reading, const MapOptions& map,
                           const std::filesystem::path& path,
                           const std::function<MapMetadata(const PointCounts&)>& metadataOf,
                           const BuildMapFileOptions& options,

@@ -21,14 +21,14 @@ std::string absolutePath(const std::filesystem::path& path) {
 
 /// Every character that could mean something in a URI as %hh.
 std::string immutableUri(const std::filesystem::path& path) {
-  constexpr const char* kDigits = "0123456789ABCDEF";
+  constexpr const char* kHexDigits = "0123456789ABCDEF";
   std::string uri = "file:";
   for (const char c : absolutePath(path)) {
     const auto byte = static_cast<unsigned char>(c);
     if (byte < 0x80 && (std::isalnum(byte) || c == '/' || c == '.' || c == '-' || c == '_'))
       uri += c;
     else
-      uri += {'%', kDigits[byte >> 4], kDigits[byte & 15]};
+      uri += {'%', kHexDigits[byte >> 4], kHexDigits[byte & 15]};
   }
   return uri + "?immutable=1";
 }

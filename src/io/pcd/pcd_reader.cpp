@@ -9,6 +9,7 @@
 #include <mutex>
 #include <numeric>
 #include <type_traits>
+#include <utility>
 
 #include "io/files/mapped_file.h"
 #include "io/pcd/pcd_body.h"
@@ -99,9 +100,9 @@ const PcdField* PcdHeader::find(const std::string& name) const {
 }
 
 struct PcdReader::Body {
-  explicit Body(const std::filesystem::path& path) : file(path) {}
+  explicit Body(std::shared_ptr<const MappedFile> mapped) : file(std::move(mapped)) {}
 
-  MappedFile file;
+  std::shared_ptr<const MappedFile> file;
   std::string_view data;
   // Filled by the first read: where x, y and z are, and the memory that holds them if it is not the file's.
   std::mutex mutex;
@@ -162,10 +163,20 @@ struct PcdReader::Body {
   }
 };
 
-PcdReader::PcdReader(const std::filesystem::path& path) : path_(path), body_(std::make_unique<Body>(path)) {
-  header_ = parsePcdHeader(path_, body_->file.bytes());
-  body_->data = body_->file.bytes().substr(header_.data_offset);
+PcdReader::PcdReader(const std::filesystem::path& path)
+    : path_(path), body_(std::make_unique<Body>(std::make_shared<const MappedFile>(path))) {
+  header_ = parsePcdHeader(path_, body_->file->bytes());
+  body_->data = body_->file->bytes().substr(header_.data_offset);
   checkPcdBody(path_, header_, body_->data);
+}
+
+PcdReader::PcdReader(std::filesystem::path path, PcdHeader header, std::unique_ptr<Body> body)
+    : path_(std::move(path)), header_(std::move(header)), body_(std::move(body)) {}
+
+PcdReader PcdReader::sameFile() const {
+  auto body = std::make_unique<Body>(body_->file);
+  body->data = body_->data;
+  return PcdReader(path_, header_, std::move(body));
 }
 
 PcdReader::~PcdReader() = default;
@@ -173,7 +184,7 @@ PcdReader::PcdReader(PcdReader&&) noexcept = default;
 PcdReader& PcdReader::operator=(PcdReader&&) noexcept = default;
 
 void PcdReader::requireWhole() const {
-  body_->file.requireWhole();
+  body_->file->requireWhole();
 }
 
 void PcdReader::read(std::size_t first, PointBlock<3>& block) const {

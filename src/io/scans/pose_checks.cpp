@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/io/scans/pose_checks.h"
+#include "io/scans/pose_checks.h"
 
 #include <algorithm>
 #include <sstream>
 
-namespace gaussmap {
+namespace gaussmap::detail {
 namespace {
 
 // Earth-centred coordinates end at 1e7 m: what is further away is no position in metres.
@@ -26,31 +26,31 @@ std::string describe(const Pose& pose) {
   return text.str();
 }
 
-using Scans = std::vector<const ScanPose*>;
+using ScanPoses = std::vector<const ScanPose*>;
 
-Scans scansAt(const Pose& pose, const std::vector<ScanPose>& scans) {
-  Scans found;
+ScanPoses scansAt(const Pose& pose, const std::vector<ScanPose>& scans) {
+  ScanPoses found;
   for (const ScanPose& scan : scans)
     if (samePose(scan.pose, pose)) found.push_back(&scan);
   return found;
 }
 
 /// The same cloud twice may well have the same pose.
-bool cloudsDiffer(const Scans& scans) {
+bool cloudsDiffer(const ScanPoses& scans) {
   return std::any_of(scans.begin(), scans.end(),
                      [&scans](const ScanPose* scan) { return scan->fingerprint != scans.front()->fingerprint; });
 }
 
 void warnOfIdenticalPoses(const std::vector<ScanPose>& scans, PoseDiagnosis& diagnosis) {
   if (scans.empty()) return;
-  const Scans like_first = scansAt(scans.front().pose, scans);
+  const ScanPoses like_first = scansAt(scans.front().pose, scans);
   if (like_first.size() == scans.size()) {
     if (cloudsDiffer(like_first))
       diagnosis.warnings.push_back("all " + std::to_string(scans.size()) + " scans have the same pose " +
                                    describe(scans.front().pose) + " but their points differ. " + kWayOut);
     return;
   }
-  const Scans at_identity = scansAt(Pose{}, scans);
+  const ScanPoses at_identity = scansAt(Pose{}, scans);
   if (at_identity.size() < 2 || !cloudsDiffer(at_identity)) return;
   diagnosis.warnings.push_back(
       std::to_string(at_identity.size()) + " of " + std::to_string(scans.size()) +
@@ -59,7 +59,7 @@ void warnOfIdenticalPoses(const std::vector<ScanPose>& scans, PoseDiagnosis& dia
 }
 
 void warnOfFarPoses(const std::vector<ScanPose>& scans, PoseDiagnosis& diagnosis) {
-  Scans far;
+  ScanPoses far;
   for (const ScanPose& scan : scans)
     if (scan.pose.translation.norm() > kFarthest) far.push_back(&scan);
   if (far.empty()) return;
@@ -86,4 +86,4 @@ PoseDiagnosis diagnosePoses(const std::vector<ScanPose>& scans) {
   return diagnosis;
 }
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "core/parallel.h"
+#include "gaussmap/core/scans.h"
 #include "gaussmap/mapping/build.h"
-#include "gaussmap/mapping/scan.h"
 #include "mapping/moving/check_options.h"
 #include "mapping/moving/shared_cells.h"
 
@@ -25,7 +25,7 @@ constexpr int kRatio = 6, kScales = 3;  // coarser cells serve the culling only
 }  // namespace
 
 struct MovingPoints::State {
-  std::vector<ScanSource> scans;
+  std::shared_ptr<const Scans> scans;
   MovingPointOptions options;
   PointCounts counts;
   GaussianMap<3> map;
@@ -49,8 +49,8 @@ MomentGrid<3> MovingPoints::State::stillPoints(const std::function<void(std::siz
   tbb::enumerable_thread_specific<MomentGrid<3>> partials([&] { return MomentGrid<3>(map.grid().side(0)); });
   std::mutex progress_mutex;
   std::size_t done = 0;
-  parallelFor(scans.size(), options.evidence.threads, 1, [&](std::size_t index) {
-    const Scan scan = loadScan(scans[index], options.evidence.frame);
+  parallelFor(scans->size(), options.evidence.threads, 1, [&](std::size_t index) {
+    const Scan scan = scans->read(index);
     std::vector<Vector<3>> points;
     Eigen::Vector3d in_map;
     for (std::size_t i = 0; i < scan.points.size(); ++i) {
@@ -70,7 +70,7 @@ MomentGrid<3> MovingPoints::State::stillPoints(const std::function<void(std::siz
   return all;
 }
 
-MovingPoints::MovingPoints(std::vector<ScanSource> scans, const MovingPointOptions& options,
+MovingPoints::MovingPoints(std::shared_ptr<const Scans> scans, const MovingPointOptions& options,
                            const std::function<void(MovingPointStep, std::size_t)>& progress)
     : state_(std::make_unique<State>()) {
   const MapOptions grid{options.resolution, kRatio, kScales, 0.0};
@@ -88,14 +88,13 @@ MovingPoints::MovingPoints(std::vector<ScanSource> scans, const MovingPointOptio
   };
 
   const auto counting = report(MovingPointStep::Counting);
-  AccumulatedScans accumulated =
-      accumulateScans(state.scans, {options.resolution, input.frame, input.max_range, input.threads},
-                      [&](const AccumulateProgress& counted) {
-                        if (counting) counting(counted.scans_done);
-                      });
+  AccumulatedScans accumulated = accumulateScans(*state.scans, {options.resolution, input.max_range, input.threads},
+                                                 [&](const AccumulateProgress& counted) {
+                                                   if (counting) counting(counted.scans_done);
+                                                 });
   state.counts = accumulated.counts;
   state.map = build<3>(accumulated.moments, grid);
-  state.evidence = gatherEvidence(state.map, state.scans, input, report(MovingPointStep::Looking));
+  state.evidence = gatherEvidence(state.map, *state.scans, input, report(MovingPointStep::Looking));
   state.moving = findMovingCells(state.map, state.evidence.cells, options.cells);
   state.shared = findSharedCells(state.map, state.moving, state.evidence.cells);
   fitSurfaces(state.map, state.stillPoints(report(MovingPointStep::Sharing)), options.shared, input.threads,
@@ -106,8 +105,8 @@ MovingPoints::~MovingPoints() = default;
 MovingPoints::MovingPoints(MovingPoints&&) noexcept = default;
 MovingPoints& MovingPoints::operator=(MovingPoints&&) noexcept = default;
 
-const std::vector<ScanSource>& MovingPoints::scans() const {
-  return state_->scans;
+const Scans& MovingPoints::scans() const {
+  return *state_->scans;
 }
 const PointCounts& MovingPoints::counts() const {
   return state_->counts;
@@ -124,7 +123,7 @@ const std::vector<bool>& MovingPoints::movingCells() const {
 
 std::vector<bool> MovingPoints::inScan(std::size_t index) const {
   const State& state = *state_;
-  const Scan scan = loadScan(state.scans.at(index), state.options.evidence.frame);
+  const Scan scan = state.scans->read(index);
   std::vector<bool> flags(scan.points.size());
   Eigen::Vector3d in_map;
   for (std::size_t i = 0; i < flags.size(); ++i) {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "core/parallel.h"
-#include "gaussmap/mapping/scan.h"
+#include "gaussmap/core/scans.h"
 #include "mapping/moving/check_options.h"
 #include "mapping/moving/map_cells.h"
 #include "sensor/culling.h"
@@ -72,8 +72,8 @@ void detail::checkOptions(const ScanEvidenceOptions& options) {
   }
 }
 
-ScanEvidence gatherEvidence(const GaussianMap<3>& map, const std::vector<ScanSource>& scans,
-                            const ScanEvidenceOptions& options, const std::function<void(std::size_t)>& progress) {
+ScanEvidence gatherEvidence(const GaussianMap<3>& map, const Scans& scans, const ScanEvidenceOptions& options,
+                            const std::function<void(std::size_t)>& progress) {
   checkOptions(options);
   constexpr std::size_t kBatch = 16;  // scans in memory at a time
   const std::vector<Eigen::Vector3d> means = finestMeans(map);
@@ -82,11 +82,11 @@ ScanEvidence gatherEvidence(const GaussianMap<3>& map, const std::vector<ScanSou
   for (std::size_t first = 0; first < scans.size(); first += kBatch) {
     std::vector<OneScan> batch(std::min(kBatch, scans.size() - first));
     parallelFor(batch.size(), options.threads, 1, [&](std::size_t i) {
-      const ScanSource& source = scans[first + i];
+      const Scan scan = scans.read(first + i);
       try {
-        batch[i] = lookAround(map, means, loadScan(source, options.frame), options);
+        batch[i] = lookAround(map, means, scan, options);
       } catch (const std::out_of_range& error) {
-        throw std::out_of_range(source.path.string() + ": " + error.what());
+        throw std::out_of_range(scans.info(first + i).name + ": " + error.what());
       }
     });
     for (std::size_t i = 0; i < batch.size(); ++i) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "core/accept_points.h"
 #include "mapping/moving/check_options.h"
 #include "mapping/online/online_state.h"
 
@@ -25,6 +26,7 @@ void checkOptions(const OnlineOptions& options) {
   require(options.occupancy_every >= 1, "occupancy_every", options.occupancy_every, "must be at least 1");
   require(options.look_back >= 0, "look_back", options.look_back, "must not be negative");
   require(options.refine_every >= 0, "refine_every", options.refine_every, "must not be negative");
+  require(options.max_range >= 0.0, "max_range", options.max_range, "must not be negative");
   require(options.budget >= 1.0, "budget", options.budget, "must be at least 1");
   MovingCellOptions objects;
   objects.occupancy = options.occupancy;
@@ -121,18 +123,18 @@ template <int D>
 OnlineMapper<D>& OnlineMapper<D>::operator=(OnlineMapper&&) noexcept = default;
 
 template <int D>
-OnlineStatistics OnlineMapper<D>::add(const Scan& scan) {
+OnlineStatistics OnlineMapper<D>::add(Scan scan) {
   State& state = *state_;
   const OnlineOptions& options = state.options;
   OnlineStatistics statistics;
   StopWatch watch;
+  statistics.points = dropPoints(options.max_range, scan);
   OnlineScan<D> now;
   now.number = state.scans;
   now.pose = scan.pose;
   now.points = returnsInMap<D>(scan);
   updateByPoints(state.cells, now, options);
   ++state.scans;
-  statistics.points = now.points.size();
   statistics.cells_touched = now.touched.size();
   statistics.cells_new = now.new_cells.size();
   statistics.update_time = watch.lap();

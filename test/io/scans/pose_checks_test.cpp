@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/io/scans/pose_checks.h"
+#include "io/scans/pose_checks.h"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +9,8 @@
 #include "io/pcd/pcd_bytes.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 ScanPose scanAt(double x, std::uint64_t fingerprint) {

@@ -65,7 +65,7 @@ TEST(OnlineMapper, HoldsEveryPointAtEveryScaleAndNeverMoreGaussiansThanTheBudget
   std::size_t points = 0, added = 0;
   for (const Scan& scan : hallScans(6)) {
     const OnlineStatistics statistics = mapper.add(scan);
-    points += statistics.points;
+    points += static_cast<std::size_t>(statistics.points.accepted);
     added += statistics.added;
     const GaussianMap<3> map = mapper.map();
     for (int s = 0; s < 3; ++s) EXPECT_NEAR(map.weight(s), double(points), 1e-6) << s;
@@ -154,14 +154,14 @@ TEST(OnlineMapper, LearnsByTheRateOfEquationFive) {
 
 TEST(OnlineMapper, TakesScansWithoutPoints) {
   OnlineMapper<3> mapper(wallOptions());
-  EXPECT_EQ(mapper.add({}).points, 0u);
+  EXPECT_EQ(mapper.add({}).points.accepted, 0);
   EXPECT_TRUE(mapper.map().empty());
   Scan scan;
   scan.points = {{kNaN, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, INFINITY, 0.0}};
-  EXPECT_EQ(mapper.add(scan).points, 0u);
+  EXPECT_EQ(mapper.add(scan).points.accepted, 0);
   EXPECT_TRUE(mapper.map().empty());
   scan.points.push_back({3.0, 0.1, 0.1});
-  EXPECT_EQ(mapper.add(scan).points, 1u);
+  EXPECT_EQ(mapper.add(scan).points.accepted, 1);
   EXPECT_EQ(mapper.map().gaussianCount(0), 1u);
   EXPECT_EQ(mapper.scans(), 3u);
 }

@@ -88,7 +88,7 @@ TEST_P(Soak, LeavesMemoryWeightsAndNumbersAsTheyWere) {
   std::int64_t points = 0;
   Figures half;
   for (int i = 0; i < kScans; ++i) {
-    points += static_cast<std::int64_t>(mapper.add(roomScan(i)).points);
+    points += mapper.add(roomScan(i)).points.accepted;
     if ((i + 1) % (kScans / 4) != 0) continue;
     const GaussianMap<3> map = mapper.map();
     expectSound(map, options.budget);

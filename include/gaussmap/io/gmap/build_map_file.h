@@ -37,7 +37,7 @@ struct BuiltMapFile {
 ///
 /// `metadataOf(counts)` = the metadata of the map. Throws as accumulateScans(), saveMap() and refine();
 /// std::invalid_argument for RefineMethod::Insert, which looks at all cells at once, and for too little memory.
-BuiltMapFile buildMapFile(const std::vector<ScanSource>& scans, const AccumulateOptions& reading, const MapOptions& map,
+BuiltMapFile buildMapFile(const Scans& scans, const AccumulateOptions& reading, const MapOptions& map,
                           const std::filesystem::path& path,
                           const std::function<MapMetadata(const PointCounts&)>& metadataOf,
                           const BuildMapFileOptions& options,

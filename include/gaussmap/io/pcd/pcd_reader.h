@@ -62,6 +62,9 @@ class PcdReader {
   PcdReader(PcdReader&&) noexcept;
   PcdReader& operator=(PcdReader&&) noexcept;
 
+  /// Another reader of the same open file, which parses or expands its points for itself.
+  PcdReader sameFile() const;
+
   const std::filesystem::path& path() const { return path_; }
   const PcdHeader& header() const { return header_; }
   /// Number of points, the invalid ones of an organised cloud included.
@@ -72,8 +75,8 @@ class PcdReader {
   /// parses an ascii file or expands a compressed one and keeps x, y and z for as long as the reader lives.
   /// Throws FileError if those data are damaged.
   void read(std::size_t first, PointBlock<3>& block) const;
-  /// To be called after the last read(): throws FileError if somebody cut the file off since it was opened, for some of
-  /// the points are then zeros. The calls below look for themselves.
+  /// To be called after the last read(): throws FileError if the file was cut off since it was opened, because some of
+  /// the points are then zeros. The calls below check this themselves.
   void requireWhole() const;
 
   /// The columns asked for, size() numbers each. An element I8 or U8 beyond 2^53 is rounded. Thread-safe.
@@ -93,6 +96,8 @@ class PcdReader {
 
  private:
   struct Body;
+  PcdReader(std::filesystem::path path, PcdHeader header, std::unique_ptr<Body> body);
+
   std::filesystem::path path_;
   PcdHeader header_;
   std::unique_ptr<Body> body_;

@@ -29,21 +29,21 @@ class MovingPoints {
  public:
   /// Reads all scans three times. `progress` is called with the scans done of a step.
   /// Throws FileError, std::out_of_range as accumulateScans(), std::invalid_argument, naming the option.
-  explicit MovingPoints(std::vector<ScanSource> scans, const MovingPointOptions& options = {},
+  explicit MovingPoints(std::shared_ptr<const Scans> scans, const MovingPointOptions& options = {},
                         const std::function<void(MovingPointStep, std::size_t)>& progress = {});
   ~MovingPoints();
   MovingPoints(MovingPoints&&) noexcept;
   MovingPoints& operator=(MovingPoints&&) noexcept;
 
-  const std::vector<ScanSource>& scans() const;
+  const Scans& scans() const;
   const PointCounts& counts() const;
   const GaussianMap<3>& map() const;
   const ScanEvidence& evidence() const;
   /// Of the finest cells of the map.
   const std::vector<bool>& movingCells() const;
 
-  /// One flag a point of scan `index`, in the order of its file. Points that are no returns, or beyond max_range, are
-  /// not moving. Reads the file again. Thread-safe. Throws FileError; std::out_of_range if there is no such scan.
+  /// One flag a point of scan `index`, in its order. Points that are no returns, or beyond max_range, are
+  /// not moving. Reads the scan again. Thread-safe. Throws FileError; std::out_of_range if there is no such scan.
   std::vector<bool> inScan(std::size_t index) const;
 
  private:

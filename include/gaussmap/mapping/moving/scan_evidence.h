@@ -17,7 +17,6 @@
 namespace gaussmap {
 
 struct ScanEvidenceOptions {
-  ScanFrame frame = ScanFrame::Sensor;  ///< Map: the poses must have their rotations nevertheless
   double max_range = std::numeric_limits<double>::infinity();  ///< farther points hit no cell, but free the way [m]
   std::optional<Projection> projection;     ///< of every scan; nothing: found for each from its points
   std::optional<double> no_return_is_free;  ///< pixels without return are free space up to this range [m]
@@ -36,8 +35,7 @@ struct ScanEvidence {
 /// of its points (look()). Yguel 2009, sec. 4.1 and 4.2, with one sample a cell.
 /// `progress` is called with the number of scans done. Throws FileError for a damaged file; std::out_of_range, naming
 /// file and point, for a point too far for the cells; std::invalid_argument, naming the option.
-ScanEvidence gatherEvidence(const GaussianMap<3>& map, const std::vector<ScanSource>& scans,
-                            const ScanEvidenceOptions& options = {},
+ScanEvidence gatherEvidence(const GaussianMap<3>& map, const Scans& scans, const ScanEvidenceOptions& options = {},
                             const std::function<void(std::size_t)>& progress = {});
 
 }  // namespace gaussmap

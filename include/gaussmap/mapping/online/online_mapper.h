@@ -4,14 +4,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "gaussmap/core/scans.h"
 #include "gaussmap/map/gaussian_map.h"
 #include "gaussmap/mapping/moving/moving_cells.h"
 #include "gaussmap/mapping/refine.h"
-#include "gaussmap/mapping/scan.h"
 #include "gaussmap/sensor/evidence.h"
 #include "gaussmap/sensor/projection.h"
 #include "gaussmap/sensor/sight.h"
@@ -32,6 +33,7 @@ enum class OccupancySamples {
 
 struct OnlineOptions {
   MapOptions map;
+  double max_range = std::numeric_limits<double>::infinity();  ///< farther points are left out [m]
   LearningRate learning_rate = LearningRate::SampleMean;
   double slowest_rate = 5e-4;  ///< eps_min of eq. (5), LearningRate::Occupancy only, in (0, 1]
   double fastest_rate = 5e-2;  ///< eps_max, at least eps_min, in (0, 1]
@@ -73,7 +75,7 @@ struct RemovedCluster {
 
 /// What one add() did.
 struct OnlineStatistics {
-  std::size_t points = 0;         ///< counted
+  PointCounts points;             ///< of the scan
   std::size_t cells_touched = 0;  ///< finest cells with points
   std::size_t cells_new = 0;      ///< of them, those not seen before
   std::size_t cells_tested = 0;   ///< of the coarser scales, what culling looked at
@@ -103,7 +105,7 @@ class OnlineMapper {
   /// One scan. D = 2: the map is the plane z = 0 seen from above, the sensor stands upright. Points that are no
   /// returns are left out. Throws std::out_of_range, naming the point, if one is too far for 32-bit cells; the scan is
   /// then not counted.
-  OnlineStatistics add(const Scan& scan);
+  OnlineStatistics add(Scan scan);
 
   /// Brings a deleted finest cluster back, as certain as can be: whoever calls this knows that it is there. Throws
   /// std::invalid_argument for another scale.

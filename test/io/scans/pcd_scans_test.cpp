@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/io/scans/scan_list.h"
+#include "gaussmap/io/scans/pcd_scans.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "io/files/temporary_directory.h"
+#include "io/scans/scan_names.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 using test::TemporaryDirectory;

@@ -9,9 +9,9 @@
 #include "gaussmap/core/pose.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
 
-namespace gaussmap {
+namespace gaussmap::detail {
 
-/// What the doctor wants to know of a scan; small enough to keep for all scans.
+/// Input of the pose checks for one scan; small enough to keep for all scans.
 struct ScanPose {
   std::filesystem::path path;
   Pose pose;                      ///< as given, the quaternion not normalised yet
@@ -25,9 +25,9 @@ struct PoseDiagnosis {
   std::vector<std::string> warnings;  ///< one sentence or two each, with file names and the way out
 };
 
-/// Looks at the poses of all scans before a map is built of them. Throws FileError naming the scan if a pose cannot be
+/// Checks the poses of all scans before a map is built of them. Throws FileError naming the scan if a pose cannot be
 /// used, see poseFault(). Warns if scans that differ stand at one and the same pose, all of them or all those without
 /// a pose of their own (the identity), and of translations beyond 1e8 m.
 PoseDiagnosis diagnosePoses(const std::vector<ScanPose>& scans);
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gaussmap/io/scans/pcd_scans.h"
+
+#include <algorithm>
+#include <set>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include "gaussmap/io/scans/pose_file.h"
+#include "io/scans/pose_checks.h"
+#include "io/scans/scan_names.h"
+
+namespace gaussmap {
+using namespace detail;
+
+namespace {
+
+// Beyond, files are opened again when they are read: each open one takes a memory map and a few kilobytes.
+constexpr std::size_t kMostOpen = 1024;
+
+std::vector<std::filesystem::path> scansIn(const std::filesystem::path& directory) {
+  std::vector<std::filesystem::path> scans;
+  std::error_code error;
+  std::filesystem::directory_iterator entry(directory, error);
+  for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+    // A link to nowhere or a pipe stays in the list: its reader says what is wrong with it.
+    std::error_code ignored;
+    if (isScanName(entry->path().filename()) && !entry->is_directory(ignored)) scans.push_back(entry->path());
+  }
+  if (error) throw FileError(directory, "cannot be listed: " + error.message());
+  if (scans.empty()) throw FileError(directory, "no .pcd file in this directory");
+  std::sort(scans.begin(), scans.end(),
+            [](const auto& a, const auto& b) { return naturalLess(a.filename().string(), b.filename().string()); });
+  return scans;
+}
+
+/// A field element as the interface names it.
+std::string valueName(const PcdField& field, std::size_t element) {
+  return field.count == 1 ? field.name : field.name + "[" + std::to_string(element) + "]";
+}
+
+class PcdScanReader : public ScanReader {
+ public:
+  explicit PcdScanReader(PcdReader reader) : reader_(std::move(reader)) {}
+
+  std::size_t size() const override { return reader_.size(); }
+  int columns() const override {
+    const PcdHeader& header = reader_.header();
+    return header.height > 1 ? static_cast<int>(header.width) : 0;
+  }
+  void read(std::size_t first, PointBlock<3>& block) const override { reader_.read(first, block); }
+  void requireWhole() const override { reader_.requireWhole(); }
+
+  std::vector<std::string> valueNames() const override {
+    std::vector<std::string> names;
+    for (const PcdField& field : reader_.header().fields)
+      for (std::size_t element = 0; isValue(field) && element < field.count; ++element)
+        names.push_back(valueName(field, element));
+    return names;
+  }
+  std::vector<double> values(const std::string& name) const override {
+    for (const PcdField& field : reader_.header().fields)
+      for (std::size_t element = 0; isValue(field) && element < field.count; ++element)
+        if (valueName(field, element) == name) return reader_.column(field.name, element);
+    return ScanReader::values(name);
+  }
+
+ private:
+  static bool isValue(const PcdField& field) {
+    return field.name != "x" && field.name != "y" && field.name != "z" && field.name != "_";
+  }
+
+  PcdReader reader_;
+};
+
+PcdReader openScan(const std::filesystem::path& path) {
+  PcdReader reader(path);
+  if (reader.header().find("covariance") != nullptr && reader.header().find("cell_side") != nullptr)
+    throw FileError(path, "holds the Gaussians of a map, not the points of a scan");
+  return reader;
+}
+
+/// A directory and a file in it, for example.
+void warnOfScansGivenTwice(const std::vector<std::filesystem::path>& paths, std::vector<std::string>& warnings) {
+  std::set<std::filesystem::path> seen;
+  for (const std::filesystem::path& path : paths) {
+    std::error_code error;
+    if (seen.insert(std::filesystem::weakly_canonical(path, error)).second || error) continue;
+    warnings.push_back(path.string() + " is given more than once, its points count as often");
+    return;
+  }
+}
+
+}  // namespace
+
+PcdScans::PcdScans(std::vector<PcdScan> scans, ScanFrame frame, std::vector<PcdReader> opened)
+    : scans_(std::move(scans)), opened_(std::move(opened)), frame_(frame) {
+  for (std::size_t i = opened_.size(); i < scans_.size(); ++i) {
+    PcdReader reader(scans_[i].path);
+    if (i < kMostOpen) opened_.push_back(std::move(reader));
+  }
+}
+
+PcdScans::~PcdScans() = default;
+PcdScans::PcdScans(PcdScans&&) noexcept = default;
+PcdScans& PcdScans::operator=(PcdScans&&) noexcept = default;
+
+ScanInfo PcdScans::info(std::size_t index) const {
+  const PcdScan& scan = scans_.at(index);
+  return {scan.path.string(), scan.pose, scan.time};
+}
+
+PcdReader PcdScans::reader(std::size_t index) const {
+  return index < opened_.size() ? opened_[index].sameFile() : PcdReader(scans_.at(index).path);
+}
+
+std::unique_ptr<ScanReader> PcdScans::open(std::size_t index) const {
+  return std::make_unique<PcdScanReader>(reader(index));
+}
+
+std::vector<std::filesystem::path> listScans(const std::vector<std::filesystem::path>& inputs) {
+  std::vector<std::filesystem::path> scans;
+  for (const std::filesystem::path& input : inputs) {
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(input, error);
+    if (status.type() == std::filesystem::file_type::not_found) throw FileError(input, "does not exist");
+    if (error) throw FileError(input, error.message());
+    if (std::filesystem::is_directory(status)) {
+      const std::vector<std::filesystem::path> found = scansIn(input);
+      scans.insert(scans.end(), found.begin(), found.end());
+    } else {
+      scans.push_back(input);
+    }
+  }
+  return scans;
+}
+
+FoundScans findScans(const std::vector<std::filesystem::path>& inputs, const std::filesystem::path& poses,
+                     ScanFrame frame) {
+  const std::vector<std::filesystem::path> paths = listScans(inputs);
+  std::vector<std::string> warnings;
+  warnOfScansGivenTwice(paths, warnings);
+  std::vector<PcdReader> opened;
+  std::vector<ScanPose> checked;
+  for (const std::filesystem::path& path : paths) {
+    PcdReader reader = openScan(path);
+    checked.push_back(scanPose(reader));
+    if (opened.size() < kMostOpen) opened.push_back(std::move(reader));
+  }
+  if (!poses.empty()) {
+    const std::vector<Pose> given = posesForScans(readPoseFile(poses), paths);
+    for (std::size_t i = 0; i < checked.size(); ++i) checked[i].pose = given[i];
+  }
+  const PoseDiagnosis diagnosis = diagnosePoses(checked);
+  if (frame == ScanFrame::Sensor) warnings.insert(warnings.end(), diagnosis.warnings.begin(), diagnosis.warnings.end());
+  std::vector<PcdScan> scans;
+  for (const ScanPose& scan : checked) scans.push_back({scan.path, normalised(scan.pose)});
+  return {PcdScans(std::move(scans), frame, std::move(opened)), std::move(warnings)};
+}
+
+}  // namespace gaussmap

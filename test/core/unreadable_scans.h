@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+
+#include "gaussmap/core/error.h"
+#include "gaussmap/core/scans.h"
+
+namespace gaussmap::test {
+
+/// One scan that cannot be read: shows what is checked before anything is read.
+class UnreadableScans : public Scans {
+ public:
+  std::size_t size() const override { return 1; }
+  ScanInfo info(std::size_t) const override { return {"unreadable", {}, std::nullopt}; }
+  std::unique_ptr<ScanReader> open(std::size_t) const override { throw FileError("unreadable", "was read"); }
+};
+
+}  // namespace gaussmap::test
