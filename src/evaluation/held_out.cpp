@@ -9,6 +9,7 @@
 #include <string>
 #include <tuple>
 
+#include "core/check.h"
 #include "core/parallel.h"
 #include "core/quantile.h"
 
@@ -146,10 +147,10 @@ double logOfSum(const std::vector<Neighbour<D>>& around, const std::vector<Facto
 }
 
 void checkOptions(const HeldOutOptions& options) {
-  if (!(options.background > 0.0 && options.background < 1.0))
-    throw std::invalid_argument("background = " + std::to_string(options.background) + ": must be between 0 and 1");
-  if (!(options.volume >= 0.0 && std::isfinite(options.volume)))
-    throw std::invalid_argument("volume = " + std::to_string(options.volume) + ": must not be negative");
+  require(options.background > 0.0 && options.background < 1.0, "background", options.background,
+          "must be above 0 and below 1");
+  require(options.volume >= 0.0 && std::isfinite(options.volume), "volume", options.volume,
+          "must be positive and finite (0 = the box around the points)");
 }
 
 template <int D>

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/check.h"
 #include "core/parallel.h"
 #include "gaussmap/core/error.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
@@ -35,8 +36,7 @@ bool isFinitePoint(const PointBlock<3>& block, std::size_t i) {
 }
 
 void checkOptions(const AccumulateOptions& options) {
-  if (!(options.max_range >= 0.0))
-    throw std::invalid_argument("max_range = " + std::to_string(options.max_range) + ": must not be negative");
+  require(options.max_range >= 0.0, "max_range", options.max_range, "must not be negative");
 }
 
 /// Takes out the points that are none and moves the others into the map frame.

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "mapping/moving/check_options.h"
+#include "core/check.h"
 #include "segments/fitter_state.h"
 #include "segments/output_map.h"
 #include "segments/refine.h"
@@ -21,24 +21,25 @@ namespace {
 
 void check(const SegmentFitterOptions& options) {
   const auto positive = [](double value, const char* name) {
-    require(std::isfinite(value) && value > 0.0, name, value, "a positive number");
+    require(std::isfinite(value) && value > 0.0, name, value, "must be positive");
   };
   positive(options.cell, "cell");
   positive(options.min_length, "min_length");
   positive(options.min_half_width, "min_half_width");
   positive(options.gap, "gap");
-  require(std::isfinite(options.growth) && options.growth >= 0.0, "growth", options.growth, "at least 0");
+  require(std::isfinite(options.growth) && options.growth >= 0.0, "growth", options.growth, "must not be negative");
   positive(options.particles.per_metre, "particles.per_metre");
   positive(options.particles.longest, "particles.longest");
   positive(options.particles.bin, "particles.bin");
   const SegmentRefinementOptions& refinement = options.refinement;
   positive(refinement.tolerance, "refinement.tolerance");
-  require(refinement.segment_cost >= 0.0, "refinement.segment_cost", refinement.segment_cost, "at least 0");
-  require(refinement.cell_cost >= 0.0, "refinement.cell_cost", refinement.cell_cost, "at least 0");
-  require(refinement.hole_cost >= 0.0, "refinement.hole_cost", refinement.hole_cost, "at least 0");
-  require(refinement.crossing_cost >= 0.0, "refinement.crossing_cost", refinement.crossing_cost, "at least 0");
-  require(refinement.rounds >= 0, "refinement.rounds", refinement.rounds, "at least 0");
-  require(options.particles.samples >= 1, "particles.samples", options.particles.samples, "at least 1");
+  require(refinement.segment_cost >= 0.0, "refinement.segment_cost", refinement.segment_cost, "must not be negative");
+  require(refinement.cell_cost >= 0.0, "refinement.cell_cost", refinement.cell_cost, "must not be negative");
+  require(refinement.hole_cost >= 0.0, "refinement.hole_cost", refinement.hole_cost, "must not be negative");
+  require(refinement.crossing_cost >= 0.0, "refinement.crossing_cost", refinement.crossing_cost,
+          "must not be negative");
+  require(refinement.rounds >= 0, "refinement.rounds", refinement.rounds, "must not be negative");
+  require(options.particles.samples >= 1, "particles.samples", options.particles.samples, "must be at least 1");
 }
 
 void check(const LaserScan& scan) {

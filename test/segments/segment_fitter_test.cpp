@@ -373,5 +373,25 @@ TEST(SegmentFitter, RefusesUnusableOptions) {
   refused([](SegmentFitterOptions& options) { options.refinement.tolerance = 0.0; });
 }
 
+TEST(SegmentFitter, SaysWhatIsRequiredOfAnOption) {
+  const auto messageFor = [](auto change) -> std::string {
+    SegmentFitterOptions options;
+    change(options);
+    try {
+      SegmentFitter{options};
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(messageFor([](SegmentFitterOptions& options) { options.cell = -1.0; }), "cell = -1: must be positive");
+  EXPECT_EQ(messageFor([](SegmentFitterOptions& options) { options.growth = -1e-9; }),
+            "growth = -1e-09: must not be negative");
+  EXPECT_EQ(messageFor([](SegmentFitterOptions& options) { options.particles.samples = 0; }),
+            "particles.samples = 0: must be at least 1");
+  EXPECT_EQ(messageFor([](SegmentFitterOptions& options) { options.noise.range = std::nan(""); }),
+            "range noise = nan: must be finite and not negative");
+}
+
 }  // namespace
 }  // namespace gaussmap

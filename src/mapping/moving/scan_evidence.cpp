@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "core/check.h"
 #include "core/parallel.h"
 #include "gaussmap/mapping/scan.h"
 #include "mapping/moving/check_options.h"

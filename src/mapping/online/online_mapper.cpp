@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "core/check.h"
 #include "mapping/moving/check_options.h"
 #include "mapping/online/online_state.h"
 
