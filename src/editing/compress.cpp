@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/check.h"
 #include "core/parallel.h"
 #include "editing/ellipsoid.h"
 #include "editing/thin_map.h"
@@ -96,8 +97,7 @@ class CellJudge {
 };
 
 void check(const GaussianMap<3>& map, double max_error, const CompressOptions& options) {
-  if (!(std::isfinite(max_error) && max_error > 0.0))
-    throw std::invalid_argument("max_error = " + std::to_string(max_error) + ": must be a positive number of metres");
+  require(std::isfinite(max_error) && max_error > 0.0, "max_error", max_error, "must be a positive number of metres");
   if (options.samples == 0) throw std::invalid_argument("samples = 0: without samples no Gaussian can be tested");
   if (map.isCompressed())
     throw std::invalid_argument(

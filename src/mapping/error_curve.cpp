@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/check.h"
 #include "core/quantile.h"
 #include "map/boxes_of_parents.h"
 #include "map/member_boxes.h"
@@ -118,8 +119,7 @@ RefinedMap refineWithCurves(GaussianMap<3> map, const RefineOptions& options, co
 RefinedToError refineToError(GaussianMap<3> map, double max_error, const RefineOptions& options,
                              const CurveOptions& curve) {
   checkCurve(curve);
-  if (!(std::isfinite(max_error) && max_error > 0.0))
-    throw std::invalid_argument("max_error = " + std::to_string(max_error) + ": must be a positive number of metres");
+  require(std::isfinite(max_error) && max_error > 0.0, "max_error", max_error, "must be a positive number of metres");
   CutMeter meter(map, options, curve);
   std::vector<ErrorCurve> curves;
   std::vector<ErrorNotReached> not_reached;
