@@ -34,7 +34,7 @@ void checkOptions(const OnlineOptions& options) {
   detail::checkOptions(objects, options.map.resolution);
   detail::checkOptions(options.shared, options.map.resolution);
   ScanEvidenceOptions views;
-  views.sight = options.sight;
+  views.visibility = options.visibility;
   views.projection = options.projection;
   views.no_return_is_free = options.no_return_is_free;
   detail::checkOptions(views);
