@@ -30,6 +30,11 @@ std::string toString(const CellKey<D>& key) {
 }
 
 template <int D>
+bool isInBox(const Box<D>& box, const Vector<D>& point) {
+  return (point.array() >= box.low.array()).all() && (point.array() < box.high.array()).all();
+}
+
+template <int D>
 Grid<D>::Grid(const MapOptions& options) : options_(options) {
   require(std::isfinite(options.resolution) && options.resolution > 0.0, "resolution", options.resolution,
           "the side of a cell must be a positive number of metres");
@@ -82,6 +87,13 @@ Vector<D> Grid<D>::centre(const CellKey<D>& key, int scale) const {
 }
 
 template <int D>
+Box<D> Grid<D>::boxOf(const CellKey<D>& key, int scale) const {
+  const Vector<D> middle = centre(key, scale);
+  const double half = 0.5 * side(scale);
+  return {(middle.array() - half).matrix(), (middle.array() + half).matrix()};
+}
+
+template <int D>
 Vector<D> Grid<D>::centreInParent(const CellKey<D>& key, int scale) const {
   return centreInParent(key, ancestor(key, scale, scale + 1), scale);
 }
@@ -99,6 +111,8 @@ Vector<D> Grid<D>::centreInParent(const CellKey<D>& key, const CellKey<D>& paren
 
 template std::string toString<2>(const CellKey<2>&);
 template std::string toString<3>(const CellKey<3>&);
+template bool isInBox<2>(const Box<2>&, const Vector<2>&);
+template bool isInBox<3>(const Box<3>&, const Vector<3>&);
 template class Grid<2>;
 template class Grid<3>;
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "gaussmap/map/gaussian_map.h"
-#include "gaussmap/map/leaves.h"
+#include "gaussmap/map/queries.h"
 #include "io/export/colours.h"
 
 namespace gaussmap {
@@ -23,7 +23,7 @@ enum class ColourBy {
 /// Colours and what they mean.
 struct Colouring {
   std::vector<detail::Colour> colours;  ///< one a Gaussian
-  std::string title;            ///< of the colour bar
+  std::string title;                    ///< of the colour bar
   /// Of the colour bar: either equal steps from `low` to `high`, or the names of its colours.
   std::vector<detail::Colour> bar;
   double low = 0.0, high = 1.0;

@@ -10,7 +10,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "gaussmap/map/extent.h"
+#include "gaussmap/map/queries.h"
 #include "map/map_origin.h"
 #include "viewer/camera.h"
 #include "viewer/legend.h"

@@ -11,7 +11,7 @@
 
 #include "core/check.h"
 #include "core/ellipsoid_pose.h"
-#include "gaussmap/map/leaves.h"
+#include "gaussmap/map/queries.h"
 #include "io/export/colours.h"
 #include "io/files/write_buffer.h"
 #include "map/map_origin.h"
