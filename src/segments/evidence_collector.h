@@ -19,7 +19,8 @@ class EvidenceCollector {
 
   /// Adds one beam to a segment.
   void take(const ScanBeams& beams, std::size_t beam, LiveSegment& segment);
-  /// After all beams of scan number `scan`: adds up the errors of the scan, forgets what is too much, fits the line.
+  /// After all beams of scan number `scan`: adds the errors of the scan, forgets evidence beyond the limit, fits the
+  /// line.
   void settle(const ScanBeams& beams, std::int64_t scan, LiveSegment& segment);
 
  private:

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "segments/association.h"
-#include "segments/decider.h"
+#include "segments/decide.h"
 #include "segments/new_segments.h"
 
 namespace gaussmap::detail {

@@ -10,8 +10,8 @@
 namespace gaussmap::detail {
 
 /// A better set of segments for the same evidence: all are decided on together, by which lines explain the most of the
-/// evidence for what they cost. `views` tells which places rays have passed through. The given segments stay as they
-/// are.
+/// evidence for what they cost. `views` shows which places rays have passed through. The given segments are not
+/// changed.
 std::deque<LiveSegment> optimiseSegments(const std::deque<LiveSegment>& segments, const Views& views,
                                          const SegmentFitterOptions& options);
 

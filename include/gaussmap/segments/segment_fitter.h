@@ -69,7 +69,7 @@ struct SegmentFitterOptions {
 /// What one add() did, and the map after it: the curves of Leal 2000 Figs. 7 and 8.
 struct SegmentStatistics {
   std::size_t beams = 0;       ///< that returned
-  std::size_t associated = 0;  ///< of them, those that fell to a segment of the map
+  std::size_t associated = 0;  ///< of them, those that belong to a segment of the map
   std::size_t created = 0;     ///< new segments
   std::size_t splits = 0;
   std::size_t merges = 0;

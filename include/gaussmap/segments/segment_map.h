@@ -8,8 +8,8 @@
 
 namespace gaussmap {
 
-/// A stretch of wall as a planar laser sees it, map frame. It is oriented: free space, where it was seen from, is on
-/// the left of the way from start to end. The two faces of a thin wall are two segments.
+/// A straight piece of wall as a planar laser sees it, map frame. It is oriented: seen from start towards end, the free
+/// space that it was observed from is on the left. The two faces of a thin wall are two segments.
 /// Leal, Scheding, Dissanayake 2000, sec. 3.
 struct Segment {
   Vector<2> start{0.0, 0.0};  ///< end points [m]
@@ -17,7 +17,7 @@ struct Segment {
   double normal_variance = 0.0;  ///< sigma_n^2, variance of the evidence across the line [m^2], eq. [2]
   /// Of the line: (offset along the normal at the segment's middle [m], angle [rad]), symmetric positive definite.
   Matrix<2> covariance = Matrix<2>::Zero();
-  double weight = 0.0;         ///< observations it stands for
+  double weight = 0.0;         ///< observations that it represents
   std::int64_t last_seen = 0;  ///< number of the last scan that saw it, 0 = the first scan
 
   double length() const { return (end - start).norm(); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "segments/decider.h"
+#include "segments/decide.h"
 
 #include <algorithm>
 #include <cmath>
