@@ -117,7 +117,7 @@ SegmentFitterOptions fitterOptions(const FitterInput& input) {
          "only the paper's utilities and particles have one: add --utility viewpoint-invariant or --policy particles");
   options.min_length = input.min_length.value_or(options.min_length);
   options.prune = !input.no_prune;
-  options.refine = !input.no_refine && !isPapers(input);  // what they decided stays
+  options.optimise = !input.no_refine && !isPapers(input);  // what they decided stays
   return options;
 }
 

@@ -12,7 +12,7 @@
 #include "gaussmap/evaluation/held_out.h"
 #include "gaussmap/io/pcd/map_pcd.h"
 #include "gaussmap/io/ply/ply.h"
-#include "gaussmap/map/leaves.h"
+#include "gaussmap/map/queries.h"
 
 namespace gaussmap::app {
 using namespace detail;

@@ -6,8 +6,7 @@
 
 #include "common.h"
 #include "gaussmap/io/pcd/map_pcd.h"
-#include "gaussmap/map/extent.h"
-#include "gaussmap/map/leaves.h"
+#include "gaussmap/map/queries.h"
 #include "plot.h"
 
 namespace gaussmap::app {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "gaussmap/map/extent.h"
+#include "gaussmap/map/grid.h"
 
 namespace gaussmap::app {
 

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <limits>
 
-#include "gaussmap/map/extent.h"
+#include "gaussmap/map/grid.h"
 #include "svg.h"
 
 namespace gaussmap::app {

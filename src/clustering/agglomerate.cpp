@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/check.h"
 #include "merge_neighbours.h"
 #include "merge_table.h"
 
@@ -19,8 +20,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t kUnknown = 0xFFFFFFFFu;
 
 void checkOptions(const AgglomerateOptions& options) {
-  if (options.neighbours < 1) throw std::invalid_argument("neighbours = 0: must be at least 1");
-  if (options.restricted_until < 1) throw std::invalid_argument("restricted_until = 0: must be at least 1");
+  require(options.neighbours >= 1, "neighbours", static_cast<double>(options.neighbours), "must be at least 1");
+  require(options.restricted_until >= 1, "restricted_until", static_cast<double>(options.restricted_until),
+          "must be at least 1");
 }
 
 /// Merges all that a table holds, every pair a candidate. Each slot knows the slot after it that is cheapest to merge

@@ -72,7 +72,33 @@ KLClustering<D> KLKMeans<D>::run(const std::vector<Gaussian<D>>& data,
   return problem.finish(problem.run(std::move(references), options_));
 }
 
+template <int D>
+KLClustering<D> insertCluster(const std::vector<Gaussian<D>>& data, const std::vector<Gaussian<D>>& current_references,
+                              const KLKMeansOptions& options) {
+  checkOptions(options);
+  const KLProblem<D> problem(data);
+  if (current_references.size() + 1 >= data.size()) return problem.eachItsOwn();
+  if (current_references.empty()) return problem.finish(problem.oneCluster());
+  std::vector<Gaussian<D>> references = current_references;
+  for (Gaussian<D>& w : references) w.mean -= problem.centre();
+  // The current references with the data that are nearest to them: what line 9 looks for the worst datum in.
+  KLPartition<D> current;
+  current.references = std::move(references);
+  problem.assign(current.references, current.assignment);
+  current.labels = current.assignment.labels;
+  Random random(options.seed);
+  KLPartition<D> partition = insertSeed(problem, current, options);
+  const int swaps = swapLoop(problem, options, random, partition);
+  KLClustering<D> clustering = problem.finish(partition);
+  clustering.swaps = swaps;
+  return clustering;
+}
+
 template class KLKMeans<2>;
 template class KLKMeans<3>;
+template KLClustering<2> insertCluster<2>(const std::vector<Gaussian<2>>&, const std::vector<Gaussian<2>>&,
+                                          const KLKMeansOptions&);
+template KLClustering<3> insertCluster<3>(const std::vector<Gaussian<3>>&, const std::vector<Gaussian<3>>&,
+                                          const KLKMeansOptions&);
 
 }  // namespace gaussmap

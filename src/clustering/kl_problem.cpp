@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/check.h"
 #include "small_cholesky.h"
 
 namespace gaussmap::detail {
@@ -76,7 +77,7 @@ typename KLProblem<D>::References referenceFeatures(const std::vector<Gaussian<D
 template <int D>
 void checkMeanAndWeight(const Gaussian<D>& datum, std::size_t index) {
   if (!(datum.weight > 0.0 && std::isfinite(datum.weight)))
-    throw std::invalid_argument("datum " + std::to_string(index) + ": weight " + std::to_string(datum.weight) +
+    throw std::invalid_argument("datum " + std::to_string(index) + ": weight " + numberText(datum.weight) +
                                 " is not positive and finite");
   if (!datum.mean.allFinite())
     throw std::invalid_argument("datum " + std::to_string(index) + ": the mean is not finite");
@@ -85,13 +86,11 @@ void checkMeanAndWeight(const Gaussian<D>& datum, std::size_t index) {
 }  // namespace
 
 void checkOptions(const KLKMeansOptions& options) {
-  const auto refuse = [](const std::string& name, double value, const std::string& rule) {
-    throw std::invalid_argument(name + " = " + std::to_string(value) + ": must be " + rule);
-  };
-  if (options.k < 1) refuse("k", options.k, "at least 1");
-  if (options.max_iterations < 1) refuse("max_iterations", options.max_iterations, "at least 1");
-  if (!(options.tolerance >= 0.0 && options.tolerance < 1.0)) refuse("tolerance", options.tolerance, "in [0, 1)");
-  if (options.max_swaps < 0) refuse("max_swaps", options.max_swaps, "at least 0");
+  require(options.k >= 1, "k", options.k, "must be at least 1");
+  require(options.max_iterations >= 1, "max_iterations", options.max_iterations, "must be at least 1");
+  require(options.tolerance >= 0.0 && options.tolerance < 1.0, "tolerance", options.tolerance,
+          "must be at least 0 and below 1");
+  require(options.max_swaps >= 0, "max_swaps", options.max_swaps, "must not be negative");
 }
 
 template <int D>

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/check.h"
 #include "core/parallel.h"
 #include "editing/ellipsoid.h"
 #include "editing/thin_map.h"
@@ -96,9 +97,8 @@ class CellJudge {
 };
 
 void check(const GaussianMap<3>& map, double max_error, const CompressOptions& options) {
-  if (!(std::isfinite(max_error) && max_error > 0.0))
-    throw std::invalid_argument("max_error = " + std::to_string(max_error) + ": must be a positive number of metres");
-  if (options.samples == 0) throw std::invalid_argument("samples = 0: without samples no Gaussian can be tested");
+  require(std::isfinite(max_error) && max_error > 0.0, "max_error", max_error, "must be a positive number of metres");
+  require(options.samples >= 1, "samples", static_cast<double>(options.samples), "must be at least 1");
   if (map.isCompressed())
     throw std::invalid_argument(
         "the map is compressed already, and what was deleted is not there to measure against: compress the map that "

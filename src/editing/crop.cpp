@@ -111,11 +111,6 @@ GaussianMap<D> crop(const GaussianMap<D>& map, const std::function<bool(const Ve
   return GaussianMap<D>(map.options(), std::move(scales));
 }
 
-template <int D>
-bool isInBox(const Box<D>& box, const Vector<D>& point) {
-  return (point.array() >= box.low.array()).all() && (point.array() < box.high.array()).all();
-}
-
 Polygon::Polygon(std::vector<Vector<2>> corners) : corners_(std::move(corners)) {
   if (corners_.size() < 3)
     throw std::invalid_argument("a polygon has at least three corners, not " + std::to_string(corners_.size()));
@@ -137,9 +132,8 @@ bool Polygon::contains(double x, double y) const {
   return inside;
 }
 
-#define GAUSSMAP_INSTANTIATE(D)                                                                         \
-  template GaussianMap<D> crop<D>(const GaussianMap<D>&, const std::function<bool(const Vector<D>&)>&); \
-  template bool isInBox<D>(const Box<D>&, const Vector<D>&);
+#define GAUSSMAP_INSTANTIATE(D) \
+  template GaussianMap<D> crop<D>(const GaussianMap<D>&, const std::function<bool(const Vector<D>&)>&);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)
 #undef GAUSSMAP_INSTANTIATE

@@ -9,10 +9,10 @@
 #include <string>
 #include <tuple>
 
+#include "core/check.h"
 #include "core/parallel.h"
 #include "core/pi.h"
 #include "map/near_cells.h"
-#include "mapping/moving/check_options.h"
 
 namespace gaussmap {
 using namespace detail;
@@ -113,7 +113,7 @@ std::vector<std::size_t> unexplained(const std::vector<double>& p_values, IndexR
 template <int D>
 void check(const GaussianMap<D>& first, const GaussianMap<D>& second, const DiffOptions& options) {
   const int s = options.scale;
-  require(s >= 0 && s < first.scales() && s < second.scales(), "scale", s, "one of the maps does not have it");
+  require(s >= 0 && s < first.scales() && s < second.scales(), "scale", s, "must be a scale of both maps");
   require(options.level > 0.0 && options.level < 1.0, "level", options.level, "must lie between 0 and 1");
   require(options.points >= 1.0, "points", options.points, "must be at least 1");
   require(options.threads >= 0, "threads", options.threads, "must be at least 1 (0 = all)");

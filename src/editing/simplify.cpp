@@ -7,11 +7,11 @@
 #include <string>
 #include <utility>
 
+#include "core/check.h"
 #include "core/quantile.h"
 #include "gaussmap/map/sampling.h"
 #include "map/areas.h"
 #include "mapping/cluster_cuts.h"
-#include "mapping/moving/check_options.h"
 #include "points/nearest_distances.h"
 
 namespace gaussmap {
@@ -23,11 +23,11 @@ template <int D>
 void check(const GaussianMap<D>& map, const SimplifyOptions& options) {
   if (options.budget)
     require(std::isfinite(*options.budget) && *options.budget >= 1.0, "budget", *options.budget,
-            "must be at least 1 Gaussian a cell");
+            "must be at least 1 Gaussian per cell");
   require(options.threads >= 0, "threads", options.threads, "must be at least 1 (0 = all)");
   for (const auto& [scale, most] : options.max_gaussians) {
     require(scale >= 0 && scale < map.scales(), "max_gaussians of scale", scale,
-            "the map has the scales 0 to " + std::to_string(map.scales() - 1));
+            "must be one of the map, 0 to " + std::to_string(map.scales() - 1));
     if (most < map.cellCount(scale))
       throw std::invalid_argument("max_gaussians = " + std::to_string(most) + ": scale " + std::to_string(scale) +
                                   " has " + std::to_string(map.cellCount(scale)) +

@@ -8,7 +8,7 @@
 
 #include "core/parallel.h"
 #include "core/quantile.h"
-#include "gaussmap/map/leaves.h"
+#include "gaussmap/map/queries.h"
 #include "mesh/mesh_distance.h"
 #include "points/nearest_search.h"
 

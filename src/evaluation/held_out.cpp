@@ -9,8 +9,10 @@
 #include <string>
 #include <tuple>
 
+#include "core/check.h"
 #include "core/parallel.h"
 #include "core/quantile.h"
+#include "map/near_cells.h"
 
 namespace gaussmap {
 using namespace detail;
@@ -109,20 +111,11 @@ enum class Cells { All, Leaves };
 template <int D>
 std::vector<Neighbour<D>> neighbours(const GaussianMap<D>& map, int scale, Cells cells, const CellKey<D>& key) {
   std::vector<Neighbour<D>> found;
-  for (int code = 0; code < (D == 3 ? 27 : 9); ++code) {
-    CellKey<D> other = key;
-    bool fits = true;
-    int digits = code;
-    for (std::size_t axis = 0; axis < D; ++axis, digits /= 3) {
-      const std::int64_t shifted = std::int64_t{key[axis]} + digits % 3 - 1;
-      other[axis] = static_cast<std::int32_t>(shifted);
-      fits &= shifted == other[axis];
-    }
-    if (!fits) continue;
+  forKeysAround(key, [&](const CellKey<D>& other) {
     const auto cell = map.find(other, scale);
     if (cell && (cells == Cells::All || map.isLeaf(*cell, scale)))
       found.push_back({map.grid().centre(other, scale), map.gaussiansOf(*cell, scale), other == key});
-  }
+  });
   return found;
 }
 
@@ -146,10 +139,10 @@ double logOfSum(const std::vector<Neighbour<D>>& around, const std::vector<Facto
 }
 
 void checkOptions(const HeldOutOptions& options) {
-  if (!(options.background > 0.0 && options.background < 1.0))
-    throw std::invalid_argument("background = " + std::to_string(options.background) + ": must be between 0 and 1");
-  if (!(options.volume >= 0.0 && std::isfinite(options.volume)))
-    throw std::invalid_argument("volume = " + std::to_string(options.volume) + ": must not be negative");
+  require(options.background > 0.0 && options.background < 1.0, "background", options.background,
+          "must be above 0 and below 1");
+  require(options.volume >= 0.0 && std::isfinite(options.volume), "volume", options.volume,
+          "must be positive and finite (0 = the box around the points)");
 }
 
 template <int D>

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "gaussmap/segments/segment.h"
+#include "gaussmap/segments/segment_map.h"
 #include "mesh/mesh_tree.h"
 
 namespace gaussmap::detail {

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/check.h"
 #include "core/pi.h"
 #include "core/quantile.h"
 #include "evaluation/segment_tree.h"
@@ -17,10 +18,6 @@ namespace {
 
 constexpr double kSameWay = 20.0 * kPi / 180.0;
 constexpr double kSamePoint = 1e-6;  // [m]
-
-void require(bool usable, const char* name, double value) {
-  if (!usable) throw std::invalid_argument(std::string(name) + " = " + std::to_string(value) + " cannot be used");
-}
 
 /// Share of the length of `lines` that is within the tolerance of the tree.
 double shareNear(const std::vector<Segment>& lines, const SegmentTree& tree, const WallScoreOptions& options) {
@@ -98,10 +95,10 @@ void scoreCorners(const SegmentMap& map, const std::vector<Segment>& walls, cons
 }  // namespace
 
 WallScore scoreWalls(const SegmentMap& map, const std::vector<Segment>& walls, const WallScoreOptions& options) {
-  require(options.tolerance > 0.0, "tolerance", options.tolerance);
-  require(options.spacing > 0.0, "spacing", options.spacing);
-  require(options.shortest >= 0.0, "shortest", options.shortest);
-  require(options.corner_deg >= 0.0, "corner_deg", options.corner_deg);
+  require(options.tolerance > 0.0, "tolerance", options.tolerance, "must be positive");
+  require(options.spacing > 0.0, "spacing", options.spacing, "must be positive");
+  require(options.shortest >= 0.0, "shortest", options.shortest, "must not be negative");
+  require(options.corner_deg >= 0.0, "corner_deg", options.corner_deg, "must not be negative");
   WallScore score;
   score.recall = shareNear(walls, SegmentTree(map.segments), options);
   score.precision = shareNear(map.segments, SegmentTree(walls), options);

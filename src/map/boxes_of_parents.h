@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "gaussmap/map/extent.h"
+#include "gaussmap/map/grid.h"
 
 namespace gaussmap::detail {
 

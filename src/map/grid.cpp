@@ -3,9 +3,9 @@
 
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
 
+#include "core/check.h"
 #include "core/floor_divide.h"
 #include "map/lattice.h"
 
@@ -19,12 +19,6 @@ namespace {
 constexpr double kMostSidesPerNoise = 1e7;
 constexpr std::int64_t kMostCellsAlongSide = std::int64_t{1} << 30;
 
-[[noreturn]] void refuse(const std::string& option, double value, const std::string& rule) {
-  std::ostringstream text;
-  text << option << " = " << value << ": " << rule;
-  throw std::invalid_argument(text.str());
-}
-
 }  // namespace
 
 template <int D>
@@ -35,24 +29,29 @@ std::string toString(const CellKey<D>& key) {
 }
 
 template <int D>
+bool isInBox(const Box<D>& box, const Vector<D>& point) {
+  return (point.array() >= box.low.array()).all() && (point.array() < box.high.array()).all();
+}
+
+template <int D>
 Grid<D>::Grid(const MapOptions& options) : options_(options) {
-  if (!(std::isfinite(options.resolution) && options.resolution > 0.0))
-    refuse("resolution", options.resolution, "the side of a cell must be a positive number of metres");
-  if (options.ratio < 2) refuse("ratio", options.ratio, "a coarser cell must be at least twice as wide");
-  if (options.scales < 1) refuse("scales", options.scales, "a map has at least one scale");
+  require(std::isfinite(options.resolution) && options.resolution > 0.0, "resolution", options.resolution,
+          "the side of a cell must be a positive number of metres");
+  require(options.ratio >= 2, "ratio", options.ratio, "a coarser cell must be at least twice as wide");
+  require(options.scales >= 1, "scales", options.scales, "must be at least 1");
   if (options_.noise == 0.0) options_.noise = options.resolution / 20.0;
-  if (!(std::isfinite(options_.noise) && options_.noise > 0.0))
-    refuse("noise", options.noise, "the noise floor must be positive (0 = resolution / 20)");
+  require(std::isfinite(options_.noise) && options_.noise > 0.0, "noise", options.noise,
+          "the noise floor must be positive (0 = resolution / 20)");
   std::int64_t span = 1;
   for (int scale = 0; scale < options.scales; ++scale) {
     if (scale > 0) span *= options.ratio;
-    if (span > kMostCellsAlongSide)
-      refuse("scales", options.scales, "with this ratio the coarsest cell is wider than 2^30 finest cells");
+    require(span <= kMostCellsAlongSide, "scales", options.scales,
+            "the coarsest cell must not be wider than 2^30 finest cells: take fewer scales or a smaller ratio");
     spans_.push_back(span);
     sides_.push_back(options.resolution * static_cast<double>(span));
   }
-  if (sides_.back() > kMostSidesPerNoise * options_.noise)
-    refuse("noise", options_.noise, "less than 1e-7 of the coarsest cell's side: take fewer scales or more noise");
+  require(sides_.back() <= kMostSidesPerNoise * options_.noise, "noise", options_.noise,
+          "must be at least 1e-7 of the coarsest cell's side: take fewer scales or more noise");
 }
 
 template <int D>
@@ -87,6 +86,13 @@ Vector<D> Grid<D>::centre(const CellKey<D>& key, int scale) const {
 }
 
 template <int D>
+Box<D> Grid<D>::boxOf(const CellKey<D>& key, int scale) const {
+  const Vector<D> middle = centre(key, scale);
+  const double half = 0.5 * side(scale);
+  return {(middle.array() - half).matrix(), (middle.array() + half).matrix()};
+}
+
+template <int D>
 Vector<D> Grid<D>::centreInParent(const CellKey<D>& key, int scale) const {
   return centreInParent(key, ancestor(key, scale, scale + 1), scale);
 }
@@ -104,6 +110,8 @@ Vector<D> Grid<D>::centreInParent(const CellKey<D>& key, const CellKey<D>& paren
 
 template std::string toString<2>(const CellKey<2>&);
 template std::string toString<3>(const CellKey<3>&);
+template bool isInBox<2>(const Box<2>&, const Vector<2>&);
+template bool isInBox<3>(const Box<3>&, const Vector<3>&);
 template class Grid<2>;
 template class Grid<3>;
 

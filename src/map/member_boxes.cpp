@@ -7,16 +7,6 @@
 #include "map/boxes_of_parents.h"
 
 namespace gaussmap::detail {
-namespace {
-
-template <int D>
-Box<D> boxOfCell(const GaussianMap<D>& map, std::size_t cell, int scale) {
-  const Vector<D> centre = map.grid().centre(map.scale(scale).keys[cell], scale);
-  const double half = 0.5 * map.grid().side(scale);
-  return {(centre.array() - half).matrix(), (centre.array() + half).matrix()};
-}
-
-}  // namespace
 
 template <int D>
 std::vector<Box<D>> boxesOfParents(const std::vector<Box<D>>& members, const std::vector<std::uint32_t>& parent,
@@ -40,7 +30,7 @@ std::vector<Box<D>> memberBoxes(const GaussianMap<D>& map, int scale) {
     for (std::size_t cell = 0; cell < map.cellCount(s); ++cell) {
       const IndexRange range = map.gaussiansOf(cell, s);
       for (std::size_t i = range.first; i < range.last; ++i)
-        if (std::isinf(boxes[i].low(0))) boxes[i] = boxOfCell<D>(map, cell, s);
+        if (std::isinf(boxes[i].low(0))) boxes[i] = map.grid().boxOf(map.scale(s).keys[cell], s);
     }
   }
   return boxes;

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "gaussmap/map/extent.h"
 #include "gaussmap/map/gaussian_map.h"
+#include "gaussmap/map/grid.h"
 
 namespace gaussmap::detail {
 

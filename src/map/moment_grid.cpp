@@ -7,6 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "core/check.h"
 #include "core/function_clones.h"
 #include "core/huge_pages.h"
 #include "core/parallel.h"
@@ -165,9 +166,8 @@ void requireRoom(const MomentGrid<D>& grid, const LatticeBlock<D>& block, const 
 
 template <int D>
 MomentGrid<D>::MomentGrid(double resolution) : resolution_(resolution) {
-  if (!(std::isfinite(resolution) && resolution > 0.0))
-    throw std::invalid_argument("resolution = " + std::to_string(resolution) +
-                                ": the side of a cell must be a positive number of metres");
+  require(std::isfinite(resolution) && resolution > 0.0, "resolution", resolution,
+          "the side of a cell must be a positive number of metres");
   reserve(0);
 }
 

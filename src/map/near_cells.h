@@ -19,6 +19,23 @@ inline std::int32_t cellsFor(double distance, double resolution) {
   return static_cast<std::int32_t>(std::fmax(1.0, std::round(distance / resolution)));
 }
 
+/// Calls body(key) for the 3^N keys that differ from `key` by at most one cell on every axis, `key` itself among them.
+/// The first axis varies fastest. Keys beyond 32 bits are left out.
+template <std::size_t N, typename Body>
+void forKeysAround(const std::array<std::int32_t, N>& key, const Body& body) {
+  std::array<std::int32_t, N> near = key;
+  const auto step = [&](const auto& self, std::size_t axis) -> void {
+    for (std::int32_t by = -1; by <= 1; ++by) {
+      if (__builtin_add_overflow(key[axis], by, &near[axis])) continue;
+      if (axis == 0)
+        body(near);
+      else
+        self(self, axis - 1);
+    }
+  };
+  step(step, N - 1);
+}
+
 /// Calls body(key) for the keys that differ from `key` by `from` to `to` cells on the axis on which they differ most;
 /// 1 <= from <= to. Keys beyond 32 bits are left out.
 template <std::size_t N, typename Body>
@@ -38,7 +55,7 @@ void forNearKeys(const std::array<std::int32_t, N>& key, std::int32_t from, std:
   step(step, 0, true);
 }
 
-/// The same for the finest cells around one: body(cell).
+/// Calls body(cell) for the finest cells around one, chosen as in forNearKeys().
 template <typename Body>
 void forNearCells(const GaussianMap<3>& map, std::size_t cell, std::int32_t from, std::int32_t to, const Body& body) {
   forNearKeys(map.scale(0).keys[cell], from, to, [&](const CellKey<3>& near) {

@@ -4,28 +4,43 @@
 #include <cmath>
 #include <limits>
 #include <queue>
+#include <stdexcept>
+#include <string>
 #include <tuple>
 
+#include "map/near_cells.h"
+
 namespace gaussmap {
+using namespace detail;
+
 namespace {
+
+/// Calls visit(index) for every Gaussian of a scale that stands in a leaf.
+template <int D, typename Visit>
+void forEachLeaf(const GaussianMap<D>& map, int scale, const Visit& visit) {
+  for (std::size_t cell = 0; cell < map.cellCount(scale); ++cell) {
+    if (!map.isLeaf(cell, scale)) continue;
+    const IndexRange range = map.gaussiansOf(cell, scale);
+    for (std::size_t i = range.first; i < range.last; ++i) visit(i);
+  }
+}
+
+template <int D>
+std::optional<CellKey<D>> cellOf(const GaussianMap<D>& map, const Vector<D>& point) {
+  if (!point.allFinite()) return std::nullopt;
+  try {
+    return map.grid().keyOf(point);
+  } catch (const std::out_of_range&) {
+    return std::nullopt;
+  }
+}
 
 /// Calls visit(cell) for every occupied cell of the 3^D cells around a key.
 template <int D, typename Visit>
 void forEachNeighbour(const GaussianMap<D>& map, const CellKey<D>& centre, int scale, const Visit& visit) {
-  int count = 1;
-  for (int axis = 0; axis < D; ++axis) count *= 3;
-  for (int code = 0; code < count; ++code) {
-    CellKey<D> key = centre;
-    int digits = code;
-    bool fits = true;
-    for (std::size_t axis = 0; axis < D; ++axis, digits /= 3) {
-      const std::int64_t shifted = std::int64_t{key[axis]} + digits % 3 - 1;
-      fits &= shifted == static_cast<std::int32_t>(shifted);
-      key[axis] = static_cast<std::int32_t>(shifted);
-    }
-    if (!fits) continue;
+  forKeysAround(centre, [&](const CellKey<D>& key) {
     if (const auto cell = map.find(key, scale)) visit(*cell);
-  }
+  });
 }
 
 /// Distance from a point to the box of a cell [m], 0 inside.
@@ -69,6 +84,45 @@ double logOfMixture(const std::vector<double>& terms, double weight) {
 }
 
 }  // namespace
+
+template <int D>
+std::vector<GaussianId> gaussiansOfScale(const GaussianMap<D>& map, int scale) {
+  if (scale < 0 || scale >= map.scales())
+    throw std::out_of_range("scale " + std::to_string(scale) + ": the map has " + std::to_string(map.scales()));
+  std::vector<GaussianId> all(map.gaussianCount(scale));
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = {scale, i};
+  return all;
+}
+
+template <int D>
+std::vector<GaussianId> leaves(const GaussianMap<D>& map) {
+  std::vector<GaussianId> found;
+  for (int s = 0; s < map.scales(); ++s) forEachLeaf(map, s, [&](std::size_t i) { found.push_back({s, i}); });
+  return found;
+}
+
+template <int D>
+LeafCounts leafCounts(const GaussianMap<D>& map, int scale) {
+  LeafCounts counts;
+  for (std::size_t cell = 0; cell < map.cellCount(scale); ++cell) counts.cells += map.isLeaf(cell, scale) ? 1 : 0;
+  forEachLeaf(map, scale, [&](std::size_t i) {
+    ++counts.gaussians;
+    counts.weight += map.localGaussian(i, scale).weight;
+  });
+  return counts;
+}
+
+template <int D>
+std::optional<Box<D>> extentOf(const GaussianMap<D>& map) {
+  std::optional<Box<D>> extent;
+  for (int s = 0; s < map.scales(); ++s)
+    for (std::size_t cell = 0; cell < map.cellCount(s); ++cell) {
+      if (!map.isLeaf(cell, s)) continue;
+      const Box<D> box = map.grid().boxOf(map.scale(s).keys[cell], s);
+      extent = extent ? Box<D>{extent->low.cwiseMin(box.low), extent->high.cwiseMax(box.high)} : box;
+    }
+  return extent;
+}
 
 template <int D>
 double logLikelihood(const GaussianMap<D>& map, const Vector<D>& point, int scale) {
@@ -147,11 +201,38 @@ std::optional<Vector<D>> normalAt(const GaussianMap<D>& map, const Vector<D>& po
   return std::nullopt;
 }
 
+template <int D>
+std::optional<float> logOddsAt(const GaussianMap<D>& map, const Vector<D>& point) {
+  const auto key = cellOf(map, point);
+  if (!key) return std::nullopt;
+  for (int s = 0; s < map.scales(); ++s) {
+    const auto cell = map.find(map.grid().ancestor(*key, 0, s), s);
+    if (!cell) continue;
+    if (!map.isLeaf(*cell, s)) return std::nullopt;  // its detail says that there is nothing
+    std::size_t nearest = 0;
+    double least = std::numeric_limits<double>::infinity();
+    const IndexRange all = map.gaussiansOf(*cell, s);
+    for (std::size_t i = all.first; i < all.last; ++i) {
+      const double square = all.size() == 1 ? 0.0 : mahalanobisSquared<D>(point, map.gaussian(i, s));
+      if (square >= least) continue;
+      least = square;
+      nearest = i;
+    }
+    return map.logOdds(nearest, s);
+  }
+  return std::nullopt;
+}
+
 #define GAUSSMAP_INSTANTIATE(D)                                                                  \
+  template std::vector<GaussianId> gaussiansOfScale<D>(const GaussianMap<D>&, int);              \
+  template std::vector<GaussianId> leaves<D>(const GaussianMap<D>&);                             \
+  template LeafCounts leafCounts<D>(const GaussianMap<D>&, int);                                 \
+  template std::optional<Box<(D)>> extentOf<D>(const GaussianMap<D>&);                           \
   template double logLikelihood<D>(const GaussianMap<D>&, const Vector<D>&, int);                \
   template double logLikelihood<D>(const GaussianMap<D>&, const Vector<D>&);                     \
   template std::optional<Nearest<(D)>> nearest<D>(const GaussianMap<D>&, const Vector<D>&, int); \
-  template std::optional<Vector<(D)>> normalAt<D>(const GaussianMap<D>&, const Vector<D>&);
+  template std::optional<Vector<(D)>> normalAt<D>(const GaussianMap<D>&, const Vector<D>&);      \
+  template std::optional<float> logOddsAt<D>(const GaussianMap<D>&, const Vector<D>&);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)
 #undef GAUSSMAP_INSTANTIATE

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "gaussmap/map/extent.h"
+#include "gaussmap/map/grid.h"
 #include "gaussmap/map/sampling.h"
 
 namespace gaussmap::detail {

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/accept_points.h"
+#include "core/check.h"
 #include "core/parallel.h"
 
 namespace gaussmap {
@@ -21,8 +22,7 @@ namespace {
 constexpr std::size_t kBlocksPerTask = 128;  // 65,536 points
 
 void checkOptions(const AccumulateOptions& options) {
-  if (!(options.max_range >= 0.0))
-    throw std::invalid_argument("max_range = " + std::to_string(options.max_range) + ": must not be negative");
+  require(options.max_range >= 0.0, "max_range", options.max_range, "must not be negative");
 }
 
 /// Runs body(first) on the blocks of a scan, several at a time: the number of open scans stays that of the threads.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gaussmap/mapping/build.h"
 
-#include <sstream>
 #include <stdexcept>
 
+#include "core/check.h"
 #include "map/coarsen.h"
 
 namespace gaussmap {
@@ -24,12 +24,8 @@ GaussianMap<D> withCoarserScales(MapScale<D> finest, const Grid<D>& grid) {
 template <int D>
 GaussianMap<D> build(const MomentGrid<D>& moments, const MapOptions& options) {
   const Grid<D> grid(options);
-  if (moments.resolution() != options.resolution) {
-    std::ostringstream text;
-    text << "resolution = " << options.resolution << ": the moments were counted in cells of " << moments.resolution()
-         << " m";
-    throw std::invalid_argument(text.str());
-  }
+  require(moments.resolution() == options.resolution, "resolution", options.resolution,
+          "must be that of the moments, which were counted in cells of " + numberText(moments.resolution()) + " m");
   std::vector<CellKey<D>> keys(moments.size());
   for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = moments[i].key;
   const std::vector<std::uint32_t> order = keyOrder<D>(keys, options.ratio, options.scales - 1);

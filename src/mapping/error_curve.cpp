@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/check.h"
 #include "core/quantile.h"
 #include "map/boxes_of_parents.h"
 #include "map/member_boxes.h"
@@ -69,10 +70,11 @@ class CutMeter {
 };
 
 void checkCurve(const CurveOptions& curve) {
-  if (curve.samples == 0 || curve.data == 0) throw std::invalid_argument("samples = 0: a curve needs some");
+  require(curve.samples >= 1, "samples", static_cast<double>(curve.samples), "must be at least 1");
+  require(curve.data >= 1, "data", static_cast<double>(curve.data), "must be at least 1");
   for (std::size_t i = 0; i < curve.multiples.size(); ++i)
-    if (!(curve.multiples[i] >= 1.0) || (i > 0 && curve.multiples[i] <= curve.multiples[i - 1]))
-      throw std::invalid_argument("multiples: must be at least 1 and rise");
+    require(curve.multiples[i] >= 1.0 && (i == 0 || curve.multiples[i] > curve.multiples[i - 1]), "multiples",
+            curve.multiples[i], "must be at least 1 and ascending");
 }
 
 /// The curve of a scale at the multiples asked for, as far as there are Gaussians.
@@ -118,8 +120,7 @@ RefinedMap refineWithCurves(GaussianMap<3> map, const RefineOptions& options, co
 RefinedToError refineToError(GaussianMap<3> map, double max_error, const RefineOptions& options,
                              const CurveOptions& curve) {
   checkCurve(curve);
-  if (!(std::isfinite(max_error) && max_error > 0.0))
-    throw std::invalid_argument("max_error = " + std::to_string(max_error) + ": must be a positive number of metres");
+  require(std::isfinite(max_error) && max_error > 0.0, "max_error", max_error, "must be a positive number of metres");
   CutMeter meter(map, options, curve);
   std::vector<ErrorCurve> curves;
   std::vector<ErrorNotReached> not_reached;

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "core/check.h"
 #include "map/areas.h"
 #include "map/inherit_occupancy.h"
 #include "refine_scale.h"
@@ -16,17 +17,14 @@ using namespace detail;
 namespace {
 
 void checkOptions(const RefineOptions& options, int scales) {
-  const auto refuse = [](const std::string& name, double value, const std::string& rule) {
-    throw std::invalid_argument(name + " = " + std::to_string(value) + ": must be " + rule);
-  };
-  if (!(std::isfinite(options.budget) && options.budget >= 1.0))
-    refuse("budget", options.budget, "at least 1 Gaussian a cell");
+  require(std::isfinite(options.budget) && options.budget >= 1.0, "budget", options.budget,
+          "must be at least 1 Gaussian per cell");
   for (const auto& limit : options.max_gaussians)
-    if (limit.first < 1 || limit.first >= scales)
-      refuse("max_gaussians of scale", limit.first, "of a coarse scale, 1 to " + std::to_string(scales - 1));
-  if (options.queue < 0) refuse("queue", options.queue, "at least 1 (0 = automatic)");
-  if (options.max_swaps < 0) refuse("max_swaps", options.max_swaps, "at least 0");
-  if (options.threads < 0) refuse("threads", options.threads, "at least 1 (0 = all)");
+    require(limit.first >= 1 && limit.first < scales, "max_gaussians of scale", limit.first,
+            "must be of a coarse scale, 1 to " + std::to_string(scales - 1));
+  require(options.queue >= 0, "queue", options.queue, "must be at least 1 (0 = automatic)");
+  require(options.max_swaps >= 0, "max_swaps", options.max_swaps, "must not be negative");
+  require(options.threads >= 0, "threads", options.threads, "must be at least 1 (0 = all)");
 }
 
 /// Makes every coarse scale anew from the finer one and lets refineScale(scale, areas) refine it.

@@ -3,7 +3,7 @@
 
 #include "clustering/small_cholesky.h"
 #include "core/parallel.h"
-#include "gaussmap/clustering/insert_cluster.h"
+#include "gaussmap/clustering/kl_kmeans.h"
 #include "gaussmap/core/random.h"
 #include "mapping/cell_error.h"
 #include "refine_scale.h"

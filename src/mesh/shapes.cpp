@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/check.h"
 #include "core/pi.h"
 
 namespace gaussmap::detail {
@@ -24,8 +25,7 @@ void addQuad(TriangleMesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t
 }
 
 void checkFacets(int facets) {
-  if (facets < 3 || facets > kMaxFacets)
-    throw std::invalid_argument("facets = " + std::to_string(facets) + ": 3 to " + std::to_string(kMaxFacets));
+  require(facets >= 3 && facets <= kMaxFacets, "facets", facets, "must be 3 to " + std::to_string(kMaxFacets));
 }
 
 std::uint32_t next(std::uint32_t i, int facets) {

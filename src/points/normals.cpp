@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/check.h"
 #include "core/parallel.h"
 #include "points/cell_blocks.h"
 #include "points/morton_points.h"
@@ -204,9 +205,8 @@ class Descent {
 };
 
 void checkOptions(const PointNormalOptions& options, std::size_t points) {
-  if (options.min_points < 3 || options.min_points > kMostMinPoints)
-    throw std::invalid_argument("min_points = " + std::to_string(options.min_points) + ": must be 3 ... " +
-                                std::to_string(kMostMinPoints));
+  require(options.min_points >= 3 && options.min_points <= kMostMinPoints, "min_points", options.min_points,
+          "must be 3 to " + std::to_string(kMostMinPoints));
   if (!options.viewpoint.allFinite()) throw std::invalid_argument("the viewpoint is not finite");
   if (points >= std::size_t{1} << 31) throw std::invalid_argument(std::to_string(points) + " points: at most 2^31 - 1");
 }

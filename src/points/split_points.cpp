@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "core/check.h"
 #include "core/parallel.h"
 #include "core/quantile.h"
 #include "points/nearest_mean.h"
@@ -37,10 +38,10 @@ struct PartNode {
 };
 
 void checkOptions(const SplitPointsOptions& options) {
-  if (options.most_parts < 1) throw std::invalid_argument("most_parts = 0: must be at least 1");
-  if (!(options.max_error >= 0.0) || !std::isfinite(options.max_error))
-    throw std::invalid_argument("max_error = " + std::to_string(options.max_error) + ": must be finite and >= 0");
-  if (options.rounds < 0) throw std::invalid_argument("rounds = " + std::to_string(options.rounds) + ": must be >= 0");
+  require(options.most_parts >= 1, "most_parts", static_cast<double>(options.most_parts), "must be at least 1");
+  require(options.max_error >= 0.0 && std::isfinite(options.max_error), "max_error", options.max_error,
+          "must be finite and not negative");
+  require(options.rounds >= 0, "rounds", options.rounds, "must not be negative");
 }
 
 class Splitter {

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/check.h"
 #include "gaussmap/mapping/build.h"
-#include "mapping/moving/check_options.h"
 #include "registration/descend.h"
 #include "registration/map_neighbours.h"
 #include "registration/normal_equations.h"
@@ -28,14 +28,14 @@ void check(const GaussianMap<3>& map, const Pose& guess, const RegistrationOptio
   if (map.empty()) throw std::invalid_argument("the map is empty: there is nothing to register with");
   if (const std::string fault = poseFault(guess); !fault.empty()) throw std::invalid_argument("guess: " + fault);
   require(options.resolution >= 0.0 && std::isfinite(options.resolution), "resolution", options.resolution,
-          "must be positive (0 = the finest cells)");
+          "must be positive and finite (0 = the finest cells)");
   require(options.most_gaussians >= 1, "most_gaussians", double(options.most_gaussians), "must be at least 1");
   require(options.max_iterations >= 1, "max_iterations", options.max_iterations, "must be at least 1");
   require(options.kernel > 0.0, "kernel", options.kernel, "must be positive");
   require(options.translation > 0.0, "translation", options.translation, "must be positive");
   require(options.rotation > 0.0, "rotation", options.rotation, "must be positive");
   require(options.degenerate >= 0.0, "degenerate", options.degenerate, "must not be negative");
-  require(options.threads >= 0, "threads", options.threads, "must not be negative (0 = all)");
+  require(options.threads >= 0, "threads", options.threads, "must be at least 1 (0 = all)");
 }
 
 constexpr int kCoarse = 4;  // so many times as wide are the cells of the scan at the coarse scales of the map

@@ -11,7 +11,7 @@ namespace gaussmap::detail {
 
 /// A short stretch along a segment.
 struct SegmentCell {
-  LineMoments hits;      ///< of the observations that fell to it
+  LineMoments hits;      ///< of the observations in it
   double crossed = 0.0;  ///< rays that went through it
 };
 

@@ -1,21 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "segments/decide.h"
+
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <limits>
 
-#include "segments/fitter_state.h"
-
-namespace gaussmap {
-using namespace detail;
-
-using namespace detail;
-
+namespace gaussmap::detail {
 namespace {
 
-constexpr double kNews = 1.1;       // a segment is decided on again when its evidence has grown so much
-constexpr double kParallel = 0.9;   // cosine from which on segments that are not linked may be one
-constexpr int kMostDecisions = 10;  // about a segment in one scan: votes that contradict each other would never end
+constexpr double kGrown = 1.1;             // a segment is decided on again when its evidence has grown by this factor
+constexpr double kPartnerCosine = 0.9;     // of the angle between segments that are not linked, to be merged, at least
+constexpr std::size_t kMaxDecisions = 10;  // per segment and scan: votes that contradict each other would never end
 
 /// Number of the first cell behind a hole without evidence longer than `gap`; 0 if there is none.
 std::size_t firstHole(const CellRow& row, double gap) {
@@ -34,83 +29,84 @@ std::size_t firstHole(const CellRow& row, double gap) {
   return 0;
 }
 
-}  // namespace
-
-std::vector<int> SegmentFitterState::mergePartners(int id) const {
-  const LiveSegment& segment = segments[id];
+/// The segments that a merge is considered with: the neighbours in the chain, and what lies alongside.
+std::vector<int> mergePartners(int id, double gap, const SegmentStore& store) {
+  const LiveSegment& segment = store[id];
   std::vector<int> partners;
-  // The faces of a thin wall, linked round its end, look away from each other.
+  // The faces of a thin wall, linked around its end, look away from each other.
   const auto linked = [&](int other, const Vector<2>& own_end, const Vector<2>& other_end) {
-    if ((own_end - other_end).norm() > options.gap || segments[other].line.direction.dot(segment.line.direction) <= 0.0)
-      return;
+    if ((own_end - other_end).norm() > gap || store[other].line.direction.dot(segment.line.direction) <= 0.0) return;
     partners.push_back(other);
   };
-  if (segment.next != kNone) linked(segment.next, segment.finish(), segments[segment.next].start());
+  if (segment.next != kNone) linked(segment.next, segment.finish(), store[segment.next].start());
   if (segment.previous != kNone && segment.previous != segment.next)
-    linked(segment.previous, segment.start(), segments[segment.previous].finish());
+    linked(segment.previous, segment.start(), store[segment.previous].finish());
   for (const Vector<2>& place : {segment.start(), segment.line.center, segment.finish()})
-    for (const int other : index.near(place)) {
-      const LiveSegment& near = segments[other];
+    for (const int other : store.near(place)) {
+      const LiveSegment& near = store[other];
       if (other == id || std::find(partners.begin(), partners.end(), other) != partners.end()) continue;
-      if (near.line.direction.dot(segment.line.direction) < kParallel) continue;
-      if (near.squaredDistance(place) > options.gap * options.gap) continue;
+      if (near.line.direction.dot(segment.line.direction) < kPartnerCosine) continue;
+      if (near.squaredDistance(place) > gap * gap) continue;
       partners.push_back(other);
     }
   return partners;
 }
 
-void SegmentFitterState::decide(const std::vector<int>& touched, SegmentStatistics& statistics) {
+}  // namespace
+
+DecisionCounts decide(const std::vector<int>& touched, const SegmentVotes& votes, double gap, SegmentStore& store) {
+  DecisionCounts counts;
   std::deque<int> open(touched.begin(), touched.end());
-  const std::size_t most = kMostDecisions * (touched.size() + 1);
+  const std::size_t most = kMaxDecisions * (touched.size() + 1);
   for (std::size_t decisions = 0; !open.empty() && decisions < most; ++decisions) {
     const int id = open.front();
     open.pop_front();
-    LiveSegment& segment = segments[id];
+    LiveSegment& segment = store[id];
     const CellRow& row = segment.evidence.row;
     if (!segment.alive) continue;
-    if (segment.total.n < kNews * segment.decided_at && row.cells().size() == segment.decided_cells) continue;
+    if (segment.total.n < kGrown * segment.decided_at && row.cells().size() == segment.decided_cells) continue;
     segment.decided_at = segment.total.n;
     segment.decided_cells = row.cells().size();
 
-    if (const std::size_t hole = firstHole(row, options.gap)) {
-      open.push_back(split(id, hole, false));
+    if (const std::size_t hole = firstHole(row, gap)) {
+      open.push_back(store.split(id, hole, false));
       open.push_back(id);
       continue;
     }
 
-    const SegmentGoals goals = inMap(segment.goals());
-    double highest = utility->nothing(goals);
+    const SegmentGoals goals = segment.goals();
+    double highest = votes.nothing(goals);
     std::size_t cut = 0;
     int partner = kNone;
     if (!segment.degenerate()) {
       const std::size_t best = bestBreak(row);
       if (best > 0) {
-        const double vote = utility->split(goals, inMap(goalsOfPart(segment, 0, best)),
-                                           inMap(goalsOfPart(segment, best, row.cells().size())));
+        const double vote =
+            votes.split(goals, goalsOfPart(segment, 0, best), goalsOfPart(segment, best, row.cells().size()));
         if (vote > highest) {
           highest = vote;
           cut = best;
         }
       }
     }
-    for (const int other : mergePartners(id)) {
-      const double vote =
-          utility->merge(goals, inMap(segments[other].goals()), inMap(goalsTogether(segment, segments[other])));
+    for (const int other : mergePartners(id, gap, store)) {
+      const double vote = votes.merge(goals, store[other].goals(), goalsTogether(segment, store[other]));
       if (vote > highest) {
         highest = vote;
         partner = other;
       }
     }
     if (partner != kNone) {
-      ++statistics.merges;
-      merge(id, partner);
+      ++counts.merges;
+      store.merge(id, partner);
       open.push_back(id);
     } else if (cut > 0) {
-      ++statistics.splits;
-      open.push_back(split(id, cut, true));
+      ++counts.splits;
+      open.push_back(store.split(id, cut, true));
       open.push_back(id);
     }
   }
+  return counts;
 }
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

@@ -10,6 +10,9 @@
 namespace gaussmap::detail {
 namespace {
 
+constexpr double kLongest = 10.0;  // a segment keeps particles for at most so many minimum lengths
+constexpr double kBin = 0.25;      // length of the stretches of ParticleLimit::Bins [m]
+
 class MomentCells : public EvidenceKeeper {
  public:
   void add(const std::vector<ObservationPoint>& observation, SegmentEvidence& evidence) const override {
@@ -23,7 +26,7 @@ class MomentCells : public EvidenceKeeper {
 class ParticleSets : public EvidenceKeeper {
  public:
   ParticleSets(const ParticleOptions& options, double min_length)
-      : options_(options), longest_(options.longest * min_length) {}
+      : options_(options), longest_(kLongest * min_length) {}
 
   void add(const std::vector<ObservationPoint>& observation, SegmentEvidence& evidence) const override {
     for (const ObservationPoint& point : observation) evidence.particles.push_back(point.position.cast<float>());
@@ -54,10 +57,10 @@ class ParticleSets : public EvidenceKeeper {
 
   /// The same within each bin.
   void limitBins(Random& random, SegmentEvidence& evidence) const {
-    const double per_bin = options_.per_metre * options_.bin;
+    const double per_bin = options_.per_metre * kBin;
     const std::size_t limit = static_cast<std::size_t>(std::max(per_bin, double(options_.samples)));
     const auto binOf = [&](const Particle& particle) {
-      return static_cast<int>(std::floor(evidence.row.position(particle.cast<double>()) / options_.bin));
+      return static_cast<int>(std::floor(evidence.row.position(particle.cast<double>()) / kBin));
     };
     int first = std::numeric_limits<int>::max(), last = std::numeric_limits<int>::min();
     std::vector<int> bins;

@@ -2,87 +2,100 @@
 #include "segments/fitter_state.h"
 
 #include <algorithm>
-#include <cmath>
+
+#include "segments/association.h"
+#include "segments/decide.h"
+#include "segments/new_segments.h"
 
 namespace gaussmap::detail {
-
 namespace {
 
-constexpr double kMany = 2.0;         // rays through for one that ends on it
-constexpr double kFewestRays = 10.0;  // through what is pruned
+constexpr double kCovered = 0.1;  // distance within which a beam's end counts as covered [m]
+constexpr int kPruneEvery = 10;   // scans
 
 }  // namespace
 
-int SegmentFitterState::create() {
-  int id = static_cast<int>(segments.size());
-  if (unused.empty()) {
-    segments.emplace_back();
-  } else {
-    id = unused.back();
-    unused.pop_back();
+SegmentStatistics SegmentFitterState::add(const LaserScan& original) {
+  if (scans == 0) votes.setOrigin(original.pose.translation.array().round().matrix());
+  votes.observe(original.pose.translation);
+  const ScanBeams beams(original, votes.origin(), observations);
+  SegmentStatistics statistics;
+
+  // Beams are associated with the segments of the map as it was; the others become new segments.
+  const std::vector<BeamRun> runs = findRuns(beams, options.gap);
+  std::vector<int> owners = associate(beams, runs, store, options), touched;
+  for (const BeamRun& run : runs) {
+    statistics.beams += run.last - run.first;
+    for (std::size_t i = run.first; i < run.last; ++i) {
+      if (owners[i] == kNone) continue;
+      ++statistics.associated;
+      if (store[owners[i]].beams.n == 0.0) touched.push_back(owners[i]);
+      collector.take(beams, i, store[owners[i]]);
+    }
   }
-  segments[id].alive = true;
-  return id;
-}
+  const std::size_t known = touched.size();
+  NewSegments new_segments(votes, options.cell, collector, store);
+  for (const BeamRun& run : runs)
+    for (std::size_t i = run.first; i < run.last; ++i) {
+      if (owners[i] != kNone) continue;
+      const std::size_t first = i;
+      while (i + 1 < run.last && owners[i + 1] == kNone) ++i;
+      new_segments.createFrom(beams, first, i + 1, owners, touched);
+    }
+  statistics.created = touched.size() - known;
 
-void SegmentFitterState::remove(int id) {
-  detach(id, segments);
-  index.erase(id);
-  segments[id] = LiveSegment();
-  unused.push_back(id);
-}
-
-int SegmentFitterState::split(int id, std::size_t cut, bool linked) {
-  const int next = segments[id].next, previous = segments[id].previous;
-  detach(id, segments);
-  const LiveSegment whole = std::move(segments[id]);
-  const int other = create();
-  segments[id] = partOf(whole, 0, cut);
-  segments[other] = partOf(whole, cut, whole.evidence.row.cells().size());
-  if (previous != kNone) link(previous, id, segments);
-  if (next != kNone) link(other, next, segments);
-  if (linked) link(id, other, segments);
-  enter(id);
-  enter(other);
-  return other;
-}
-
-void SegmentFitterState::merge(int into, int from) {
-  int previous = segments[into].previous, next = segments[into].next;
-  if (next == from || next == kNone) next = segments[from].next;
-  if (previous == from || previous == kNone) previous = segments[from].previous;
-  LiveSegment both = merged(segments[into], segments[from]);
-  detach(into, segments);
-  remove(from);
-  segments[into] = std::move(both);
-  if (next != kNone && next != into) link(into, next, segments);
-  if (previous != kNone && previous != into) link(previous, into, segments);
-  enter(into);
-}
-
-std::size_t SegmentFitterState::prune() {
-  std::size_t pruned = 0;
-  for (int id = 0; id < static_cast<int>(segments.size()); ++id) {
-    if (!segments[id].alive) continue;
-    double crossed = 0.0;
-    for (const SegmentCell& cell : segments[id].evidence.row.cells()) crossed += cell.crossed;
-    if (crossed < kFewestRays || crossed < kMany * segments[id].spread.beams()) continue;
-    remove(id);
-    ++pruned;
+  for (const int id : touched) {
+    collector.settle(beams, scans, store[id]);
+    store.enter(id);
   }
-  return pruned;
+  linkNeighbours(runs, owners);
+
+  for (int id = 0; id < static_cast<int>(store.segments().size()); ++id) {
+    LiveSegment& segment = store[id];
+    if (!segment.alive || !votes.reconsider(segment)) continue;
+    segment.decided_at = 0.0;
+    touched.push_back(id);
+  }
+  const DecisionCounts decisions = decide(touched, votes, options.gap, store);
+  statistics.splits = decisions.splits;
+  statistics.merges = decisions.merges;
+  if (options.prune) {
+    countCrossings(beams, 1.0, store.segments());
+    if (scans % kPruneEvery == kPruneEvery - 1) statistics.pruned = store.prune();
+  }
+  views.add(beams.scan);
+  ++scans;
+  observations += beams.hits.size();
+  describe(beams, statistics);
+  return statistics;
 }
 
-Strip SegmentFitterState::polygon(const LiveSegment& segment) const {
-  return {segment.start() - options.growth * segment.line.direction, segment.line.direction,
-          segment.length() + 2.0 * options.growth,
-          std::max(options.min_half_width, 3.0 * std::sqrt(segment.line.across))};
+void SegmentFitterState::linkNeighbours(const std::vector<BeamRun>& runs, const std::vector<int>& owners) {
+  for (const BeamRun& run : runs)
+    for (std::size_t i = run.first + 1; i < run.last; ++i) {
+      const int from = owners[i - 1], to = owners[i];
+      if (from != to && (store[to].start() - store[from].finish()).norm() <= options.gap)
+        link(from, to, store.segments());
+    }
 }
 
-SegmentGoals SegmentFitterState::inMap(SegmentGoals goals) const {
-  goals.start += origin;
-  goals.end += origin;
-  return goals;
+void SegmentFitterState::describe(const ScanBeams& beams, SegmentStatistics& statistics) const {
+  double weight = 0.0;
+  for (const LiveSegment& segment : store.segments())
+    if (segment.alive) {
+      ++statistics.segments;
+      weight += segment.total.n;
+      statistics.normal_variance += segment.total.n * segment.line.across;
+    }
+  if (weight > 0.0) statistics.normal_variance /= weight;
+  std::size_t covered = 0;
+  for (std::size_t i = 0; i < beams.hits.size(); ++i) {
+    if (!beams.scan.returned(i)) continue;
+    const std::vector<int>& near = store.near(beams.hits[i]);
+    covered += std::any_of(near.begin(), near.end(),
+                           [&](int id) { return store[id].squaredDistance(beams.hits[i]) <= kCovered * kCovered; });
+  }
+  if (statistics.beams > 0) statistics.coverage = static_cast<double>(covered) / static_cast<double>(statistics.beams);
 }
 
 }  // namespace gaussmap::detail

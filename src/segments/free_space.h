@@ -16,13 +16,13 @@ namespace gaussmap::detail {
 /// Adds to every cell the rays that went through it and ended well behind, times `weight`.
 void countCrossings(const ScanBeams& beams, double weight, std::deque<LiveSegment>& segments);
 
-/// A few of the scans that were taken: one for every half metre and quarter of a radian of heading. They tell what rays
-/// have passed through, for segments that were made later.
+/// A few of the scans: one per half metre and quarter of a radian of heading. They show which places rays have passed
+/// through, for segments that are made later.
 class Views {
  public:
-  /// Keeps the scan, or counts it for the one that was taken near by.
+  /// Keeps the scan, or counts it as a repetition of the one that was kept near by.
   void add(const LaserScan& scan);
-  /// Counts the crossings of all cells anew.
+  /// Sets the crossings of all cells to those of the kept scans.
   void countCrossings(std::deque<LiveSegment>& segments) const;
   std::size_t bytes() const;
 
@@ -30,7 +30,7 @@ class Views {
   struct View {
     Vector<2> sensor{0.0, 0.0};
     double heading = 0.0;
-    double scans = 0.0;                                  // that it stands for
+    double scans = 0.0;                                  // that it represents
     std::shared_ptr<const std::vector<float>> bearings;  // most scans have the same
     std::vector<float> ranges;                           // 0: no return
   };

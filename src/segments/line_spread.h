@@ -7,7 +7,7 @@
 
 namespace gaussmap::detail {
 
-/// Beams of one scan that fell to one line: with t the position of their ends along it.
+/// Beams of one scan that belong to one line: with t the position of their ends along it.
 struct BeamSums {
   double n = 0.0, t = 0.0, tt = 0.0;  ///< sum of 1, t, t^2
   double variance = 0.0;              ///< sum of the beams' own variances across the line [m^2]

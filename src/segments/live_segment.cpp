@@ -7,7 +7,7 @@
 namespace gaussmap::detail {
 namespace {
 
-constexpr double kTurn = 0.1;      // sine of the angle between line and row from which on the cells are made anew
+constexpr double kTurn = 0.1;      // sine of the angle between line and row above which the cells are rebuilt
 constexpr double kNothing = 1e-9;  // weight of what rounding leaves of no cells
 constexpr double kSpill = 0.2;     // a cell at an end has at least this share of what its neighbour has
 

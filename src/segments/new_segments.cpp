@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "segments/new_segments.h"
+
 #include <limits>
 
-#include "segments/fitter_state.h"
-
-namespace gaussmap {
-using namespace detail;
-
-using namespace detail;
-
+namespace gaussmap::detail {
 namespace {
 
 constexpr std::size_t kFewestToSplit = 4;  // beams
@@ -31,9 +27,8 @@ std::size_t bestBreakOfBeams(const ScanBeams& beams, std::size_t first, std::siz
   return best;
 }
 
-}  // namespace
-
-LiveSegment SegmentFitterState::segmentOf(const ScanBeams& beams, std::size_t first, std::size_t last) const {
+/// A segment of the ends of these beams, to be voted on.
+LiveSegment segmentOf(const ScanBeams& beams, std::size_t first, std::size_t last, double cell) {
   LiveSegment segment;
   LineMoments sum;
   for (std::size_t i = first; i < last; ++i) {
@@ -41,35 +36,37 @@ LiveSegment SegmentFitterState::segmentOf(const ScanBeams& beams, std::size_t fi
     segment.view += (beams.sensor() - beams.hits[i]).normalized();
   }
   segment.line = fitEvidence(sum, facing(segment.view, {1.0, 0.0}));
-  segment.evidence.row = CellRow(segment.line.center, segment.line.direction, options.cell);
+  segment.evidence.row = CellRow(segment.line.center, segment.line.direction, cell);
   for (std::size_t i = first; i < last; ++i) segment.evidence.row.add(beams.hits[i], 1.0);
   refit(segment);
   return segment;
 }
 
-void SegmentFitterState::createFrom(const ScanBeams& beams, std::size_t first, std::size_t last,
-                                    std::vector<int>& owners, std::vector<int>& touched) {
-  const LiveSegment whole = segmentOf(beams, first, last);
+}  // namespace
+
+void NewSegments::createFrom(const ScanBeams& beams, std::size_t first, std::size_t last, std::vector<int>& owners,
+                             std::vector<int>& created) {
+  const LiveSegment whole = segmentOf(beams, first, last, cell_);
   if (last - first >= kFewestToSplit) {
     const std::size_t cut = bestBreakOfBeams(beams, first, last);
-    const SegmentGoals goals = inMap(whole.goals());
+    const SegmentGoals goals = whole.goals();
     const double vote =
-        utility->split(goals, inMap(segmentOf(beams, first, cut).goals()), inMap(segmentOf(beams, cut, last).goals()));
-    if (vote > utility->nothing(goals)) {
-      createFrom(beams, first, cut, owners, touched);
-      createFrom(beams, cut, last, owners, touched);
+        votes_.split(goals, segmentOf(beams, first, cut, cell_).goals(), segmentOf(beams, cut, last, cell_).goals());
+    if (vote > votes_.nothing(goals)) {
+      createFrom(beams, first, cut, owners, created);
+      createFrom(beams, cut, last, owners, created);
       return;
     }
   }
-  const int id = create();
-  LiveSegment& segment = segments[id];
+  const int id = store_.create();
+  LiveSegment& segment = store_[id];
   segment.line = whole.line;
-  segment.evidence.row = CellRow(whole.line.center, whole.line.direction, options.cell);
-  touched.push_back(id);
+  segment.evidence.row = CellRow(whole.line.center, whole.line.direction, cell_);
+  created.push_back(id);
   for (std::size_t i = first; i < last; ++i) {
     owners[i] = id;
-    take(beams, i, segment);
+    collector_.take(beams, i, segment);
   }
 }
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

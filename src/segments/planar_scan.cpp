@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/check.h"
 #include "core/pi.h"
 #include "core/quantile.h"
 #include "gaussmap/core/error.h"
@@ -26,11 +27,10 @@ struct Beam {
 };
 
 void checkOptions(const PlanarScanOptions& options) {
-  if (!(options.step >= 0.01 && options.step <= 180.0))
-    throw std::invalid_argument("step = " + std::to_string(options.step) + ": must be 0.01 to 180 degrees");
-  if (options.slice && !(options.z_min <= options.z_max))
-    throw std::invalid_argument("a slice from " + std::to_string(options.z_min) + " m to " +
-                                std::to_string(options.z_max) + " m: the second height must not be below the first");
+  require(options.step >= 0.01 && options.step <= 180.0, "step", options.step, "must be 0.01 to 180 degrees");
+  if (options.slice)
+    require(options.z_min <= options.z_max, "z_max", options.z_max,
+            "must be at least z_min, " + numberText(options.z_min) + " m");
 }
 
 /// The points as seen from above, and how much they differ in height.
@@ -163,9 +163,8 @@ LaserScan planarScan(const Scan& cloud, const PlanarScanOptions& options) {
     return scan;
   }
   if (view.highest - view.lowest > kMostHeight)
-    throw std::invalid_argument("no scan of a planar laser: its heights in the map go from " +
-                                std::to_string(view.lowest) + " m to " + std::to_string(view.highest) +
-                                " m; take a slice of it");
+    throw std::invalid_argument("no scan of a planar laser: its heights in the map go from " + numberText(view.lowest) +
+                                " m to " + numberText(view.highest) + " m; take a slice of it");
   addSweep(scan, ordered(view.beams));
   return scan;
 }

@@ -4,41 +4,39 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
-#include "mapping/moving/check_options.h"
+#include "core/check.h"
 #include "segments/fitter_state.h"
+#include "segments/optimise.h"
 #include "segments/output_map.h"
-#include "segments/refine.h"
 
 namespace gaussmap {
-using namespace detail;
-
 using namespace detail;
 
 namespace {
 
 void check(const SegmentFitterOptions& options) {
   const auto positive = [](double value, const char* name) {
-    require(std::isfinite(value) && value > 0.0, name, value, "a positive number");
+    require(std::isfinite(value) && value > 0.0, name, value, "must be positive");
   };
   positive(options.cell, "cell");
   positive(options.min_length, "min_length");
   positive(options.min_half_width, "min_half_width");
   positive(options.gap, "gap");
-  require(std::isfinite(options.growth) && options.growth >= 0.0, "growth", options.growth, "at least 0");
+  require(std::isfinite(options.growth) && options.growth >= 0.0, "growth", options.growth, "must not be negative");
   positive(options.particles.per_metre, "particles.per_metre");
-  positive(options.particles.longest, "particles.longest");
-  positive(options.particles.bin, "particles.bin");
-  const SegmentRefinementOptions& refinement = options.refinement;
-  positive(refinement.tolerance, "refinement.tolerance");
-  require(refinement.segment_cost >= 0.0, "refinement.segment_cost", refinement.segment_cost, "at least 0");
-  require(refinement.cell_cost >= 0.0, "refinement.cell_cost", refinement.cell_cost, "at least 0");
-  require(refinement.hole_cost >= 0.0, "refinement.hole_cost", refinement.hole_cost, "at least 0");
-  require(refinement.crossing_cost >= 0.0, "refinement.crossing_cost", refinement.crossing_cost, "at least 0");
-  require(refinement.rounds >= 0, "refinement.rounds", refinement.rounds, "at least 0");
-  require(options.particles.samples >= 1, "particles.samples", options.particles.samples, "at least 1");
+  const SegmentOptimisationOptions& costs = options.optimisation;
+  positive(costs.tolerance, "optimisation.tolerance");
+  require(costs.segment_cost >= 0.0, "optimisation.segment_cost", costs.segment_cost, "must not be negative");
+  require(costs.cell_cost >= 0.0, "optimisation.cell_cost", costs.cell_cost, "must not be negative");
+  require(costs.hole_cost >= 0.0, "optimisation.hole_cost", costs.hole_cost, "must not be negative");
+  require(costs.crossing_cost >= 0.0, "optimisation.crossing_cost", costs.crossing_cost, "must not be negative");
+  require(costs.rounds >= 0, "optimisation.rounds", costs.rounds, "must not be negative");
+  require(options.particles.samples >= 1, "particles.samples", options.particles.samples, "must be at least 1");
 }
 
 void check(const LaserScan& scan) {
@@ -59,17 +57,19 @@ void check(const LaserScan& scan) {
 
 }  // namespace
 
-SegmentFitter::SegmentFitter(const SegmentFitterOptions& options, std::shared_ptr<SegmentUtility> utility)
-    : state_(std::make_unique<SegmentFitterState>()) {
+SegmentFitterOptions SegmentFitterOptions::leal2000() {
+  SegmentFitterOptions options;
+  options.policy = EvidencePolicy::ParticleSets;
+  options.particles.limit = ParticleLimit::Segment;
+  options.prune = false;
+  options.optimise = false;
+  return options;
+}
+
+SegmentFitter::SegmentFitter(const SegmentFitterOptions& options, std::shared_ptr<SegmentUtility> utility) {
   check(options);
-  state_->options = options;
-  state_->utility = utility ? std::move(utility) : std::make_shared<DescriptionLengthUtility>();
-  if (options.policy == EvidencePolicy::ParticleSets)
-    state_->model =
-        std::make_unique<SampledObservations>(options.noise, options.particles.samples, options.particles.seed);
-  else
-    state_->model = std::make_unique<UnscentedObservations>(options.noise);
-  state_->keeper = makeEvidenceKeeper(options);
+  if (!utility) utility = std::make_shared<DescriptionLengthUtility>();
+  state_ = std::make_unique<SegmentFitterState>(options, std::move(utility));
 }
 
 SegmentFitter::~SegmentFitter() = default;
@@ -82,18 +82,20 @@ SegmentStatistics SegmentFitter::add(const LaserScan& scan) {
 }
 
 SegmentMap SegmentFitter::map() const {
-  const bool refined = state_->options.refine && state_->utility->refinable();
-  return outputMap(refined ? refineSegments(*state_) : state_->segments, state_->origin);
+  const std::deque<LiveSegment>& segments = state_->store.segments();
+  const bool optimised = state_->options.optimise && state_->votes.utility().optimisable();
+  return outputMap(optimised ? optimiseSegments(segments, state_->views, state_->options) : segments,
+                   state_->votes.origin());
 }
 
 std::vector<Vector<2>> SegmentFitter::evidence() const {
+  const Vector<2>& origin = state_->votes.origin();
   std::vector<Vector<2>> points;
-  for (const LiveSegment& segment : state_->segments) {
-    for (const Particle& particle : segment.evidence.particles)
-      points.push_back(state_->origin + particle.cast<double>());
+  for (const LiveSegment& segment : state_->store.segments()) {
+    for (const Particle& particle : segment.evidence.particles) points.push_back(origin + particle.cast<double>());
     if (!segment.evidence.particles.empty()) continue;
     for (const SegmentCell& cell : segment.evidence.row.cells())
-      if (cell.hits.n > 0.0) points.push_back(state_->origin + cell.hits.mean());
+      if (cell.hits.n > 0.0) points.push_back(origin + cell.hits.mean());
   }
   return points;
 }
@@ -107,9 +109,7 @@ const SegmentFitterOptions& SegmentFitter::options() const {
 }
 
 std::size_t SegmentFitter::memoryBytes() const {
-  std::size_t sum = sizeof(SegmentFitterState) + state_->index.bytes() + state_->views.bytes();
-  for (const LiveSegment& segment : state_->segments) sum += sizeof(LiveSegment) + segment.evidence.bytes();
-  return sum;
+  return sizeof(SegmentFitterState) + state_->store.bytes() + state_->views.bytes();
 }
 
 }  // namespace gaussmap

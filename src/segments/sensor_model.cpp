@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "mapping/moving/check_options.h"
+#include "core/check.h"
 
 namespace gaussmap {
 using namespace detail;
@@ -13,8 +13,10 @@ using namespace detail;
 namespace {
 
 void check(const SensorNoise& noise) {
-  require(std::isfinite(noise.range) && noise.range >= 0.0, "range noise", noise.range, "at least 0 m");
-  require(std::isfinite(noise.bearing) && noise.bearing >= 0.0, "bearing noise", noise.bearing, "at least 0 rad");
+  require(std::isfinite(noise.range) && noise.range >= 0.0, "range noise", noise.range,
+          "must be finite and not negative");
+  require(std::isfinite(noise.bearing) && noise.bearing >= 0.0, "bearing noise", noise.bearing,
+          "must be finite and not negative");
 }
 
 /// L with L L^T = covariance, which may be singular.
@@ -37,7 +39,7 @@ Vector<2> end(const Vector<2>& sensor, double heading, double bearing, double ra
 SampledObservations::SampledObservations(const SensorNoise& noise, int samples, std::uint64_t seed)
     : noise_(noise), samples_(samples), seed_(seed) {
   check(noise);
-  require(samples >= 1, "samples of an observation", samples, "at least 1");
+  require(samples >= 1, "samples of an observation", samples, "must be at least 1");
 }
 
 void SampledObservations::observe(const LaserScan& scan, std::size_t beam, std::uint64_t number,

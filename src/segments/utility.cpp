@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "mapping/moving/check_options.h"
+#include "core/check.h"
 
 namespace gaussmap {
 using namespace detail;
@@ -17,10 +17,11 @@ constexpr double kNever = -std::numeric_limits<double>::infinity();
 
 void check(const ViewpointInvariantOptions& options) {
   require(std::isfinite(options.sigma_threshold) && options.sigma_threshold > 0.0, "sigma_threshold",
-          options.sigma_threshold, "a positive number");
+          options.sigma_threshold, "must be positive");
   require(std::isfinite(options.min_length) && options.min_length > 0.0, "min_length", options.min_length,
-          "a positive number");
-  require(options.merge_ratio >= 0.0 && options.merge_ratio < 1.0, "merge_ratio", options.merge_ratio, "0 to below 1");
+          "must be positive");
+  require(options.merge_ratio >= 0.0 && options.merge_ratio < 1.0, "merge_ratio", options.merge_ratio,
+          "must be at least 0 and below 1");
 }
 
 ViewpointInvariantOptions scaled(ViewpointInvariantOptions options, double scale) {
@@ -54,8 +55,8 @@ ViewpointDependentUtility::ViewpointDependentUtility(const ViewpointDependentOpt
       far_(options.far),
       viewpoint_(options.viewpoint),
       before_(options.viewpoint) {
-  require(std::isfinite(options.radius) && options.radius > 0.0, "radius", options.radius, "a positive number");
-  require(options.scale > 0.0 && options.scale <= 1.0, "scale", options.scale, "above 0, at most 1");
+  require(std::isfinite(options.radius) && options.radius > 0.0, "radius", options.radius, "must be positive");
+  require(options.scale > 0.0 && options.scale <= 1.0, "scale", options.scale, "must be above 0 and at most 1");
 }
 
 double ViewpointDependentUtility::split(const SegmentGoals& whole, const SegmentGoals& first,
@@ -87,9 +88,9 @@ bool ViewpointDependentUtility::inField(const Vector<2>& start, const Vector<2>&
 }
 
 DescriptionLengthUtility::DescriptionLengthUtility(const DescriptionLengthOptions& options) : options_(options) {
-  require(std::isfinite(options.sigma) && options.sigma > 0.0, "sigma", options.sigma, "a positive number");
+  require(std::isfinite(options.sigma) && options.sigma > 0.0, "sigma", options.sigma, "must be positive");
   require(std::isfinite(options.segment_cost) && options.segment_cost >= 0.0, "segment_cost", options.segment_cost,
-          "at least 0");
+          "must not be negative");
 }
 
 double DescriptionLengthUtility::split(const SegmentGoals& whole, const SegmentGoals& first,
@@ -119,7 +120,7 @@ CombinedUtility::CombinedUtility(std::vector<Part> parts) : parts_(std::move(par
   if (parts_.empty()) throw std::invalid_argument("combined utility: no parts");
   for (const Part& part : parts_) {
     if (!part.utility) throw std::invalid_argument("combined utility: a part without a utility");
-    require(std::isfinite(part.weight), "weight of a utility", part.weight, "a finite number");
+    require(std::isfinite(part.weight), "weight of a utility", part.weight, "must be finite");
   }
 }
 

@@ -5,7 +5,8 @@
 
 namespace gaussmap::detail {
 
-Culling::Culling(const RangeImage& image, const SightOptions& options) : image_(image), tolerance_(options.tolerance) {
+Culling::Culling(const RangeImage& image, const VisibilityOptions& options)
+    : image_(image), tolerance_(options.tolerance) {
   Level level{image.rows(), image.columns(), {}};
   for (int row = 0; row < level.rows; ++row)
     for (int column = 0; column < level.columns; ++column) {
@@ -45,7 +46,7 @@ bool Culling::mayPassThrough(const Eigen::Vector3d& centre, double ball_radius) 
   if (nearest + tolerance_ >= double(image_.farthest())) return false;
   const PixelBox box = pixelsOf(image_.projection(), centre, radius);
   if (box.empty()) return false;
-  // look() sees the neighbours of a point's pixel too.
+  // visibilityOf() sees the neighbours of a point's pixel too.
   const int first_row = std::max(0, box.first_row - 1), last_row = std::min(image_.rows() - 1, box.last_row + 1);
   int first = box.first_column - 1, last = box.last_column + 1;
   const int columns = image_.columns();

@@ -7,15 +7,15 @@
 
 #include "gaussmap/core/pose.h"
 #include "gaussmap/sensor/range_image.h"
-#include "gaussmap/sensor/sight.h"
+#include "gaussmap/sensor/visibility.h"
 
 namespace gaussmap::detail {
 
-/// Answers for whole balls of space what look() answers for a point, but never says more than it knows: Yguel 2009,
-/// sec. 4.2. Built once per range image, which must stay as it is for as long as this lives.
+/// Answers for whole balls of space what visibilityOf() answers for a point, but never says more than it knows: Yguel
+/// 2009, sec. 4.2. Built once per range image, which must stay as it is for as long as this lives.
 class Culling {
  public:
-  explicit Culling(const RangeImage& image, const SightOptions& options = {});
+  explicit Culling(const RangeImage& image, const VisibilityOptions& options = {});
 
   /// False only if no point of the ball (centre [m, sensor frame], radius [m]) is PassedThrough: all of it is out of
   /// view, farther than all returns, or behind what the sensor saw.
@@ -40,8 +40,8 @@ struct VisitCounts {
 };
 
 /// Hands every finest cell that may be passed through to visit(cell). From the coarsest scale down: nothing under a
-/// cell is looked at that is out of view, out of reach or hidden. The finest cells themselves are not tested: look()
-/// answers for them at the same price.
+/// cell is looked at that is out of view, out of reach or hidden. The finest cells themselves are not tested:
+/// visibilityOf() answers for them at the same price.
 ///
 /// `cells` gives scales(), rootCount(), centre(cell, scale) [m, map frame], radius(scale) [m], and
 /// forChildren(cell, scale, body), which calls body(child) for the cells of scale - 1 under it.

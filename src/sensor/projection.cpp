@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/check.h"
 #include "gaussmap/core/scans.h"
 #include "sensor/angles.h"
 
@@ -103,13 +104,9 @@ PixelBox pixelsIn(const PlanarProjection& projection, const Eigen::Vector3d& cen
   return box;
 }
 
-[[noreturn]] void refuse(const std::string& name, double value, const std::string& rule) {
-  throw std::invalid_argument(name + " = " + std::to_string(value) + ": " + rule);
-}
-
 void checkSize(int rows, int columns) {
-  if (rows < 1) refuse("rows", rows, "must be at least 1");
-  if (columns < 1) refuse("columns", columns, "must be at least 1");
+  require(rows >= 1, "rows", rows, "must be at least 1");
+  require(columns >= 1, "columns", columns, "must be at least 1");
   if (static_cast<double>(rows) * columns > kMostPixels)
     throw std::invalid_argument("an image of " + std::to_string(rows) + " x " + std::to_string(columns) +
                                 " pixels is too large: at most 2^28");
@@ -119,19 +116,19 @@ void check(const SphericalProjection& projection) {
   const auto& borders = projection.row_borders;
   if (borders.size() < 2) throw std::invalid_argument("a spherical projection needs two row borders, one row");
   for (std::size_t i = 0; i < borders.size(); ++i)
-    if (!std::isfinite(borders[i]) || (i > 0 && !(borders[i] > borders[i - 1])))
-      refuse("row border " + std::to_string(i), borders[i], "borders must be finite and ascend");
+    require(std::isfinite(borders[i]) && (i == 0 || borders[i] > borders[i - 1]), "row border " + std::to_string(i),
+            borders[i], "must be finite and above the border before it");
   checkSize(static_cast<int>(borders.size()) - 1, projection.columns);
 }
 
 void check(const PlanarProjection& projection) {
   const auto checkFocal = [](const char* name, double focal) {
-    if (!(focal > 0.0 && std::isfinite(focal))) refuse(name, focal, "a focal length must be positive and finite");
+    require(focal > 0.0 && std::isfinite(focal), name, focal, "must be positive and finite");
   };
   checkFocal("fx", projection.fx);
   checkFocal("fy", projection.fy);
-  if (!std::isfinite(projection.cx)) refuse("cx", projection.cx, "the principal point must be finite");
-  if (!std::isfinite(projection.cy)) refuse("cy", projection.cy, "the principal point must be finite");
+  require(std::isfinite(projection.cx), "cx", projection.cx, "must be finite");
+  require(std::isfinite(projection.cy), "cy", projection.cy, "must be finite");
   checkSize(projection.rows, projection.columns);
 }
 

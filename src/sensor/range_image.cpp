@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "core/check.h"
+
 namespace gaussmap {
 
 RangeImage::RangeImage(Projection projection) : projection_(std::move(projection)) {
@@ -38,8 +40,8 @@ void RangeImage::add(const Eigen::Vector3d& point) {
 
 void RangeImage::noReturnIsFree(double range) {
   const auto limit = static_cast<float>(range);
-  if (!(limit > 0.0f && std::isfinite(limit)))
-    throw std::invalid_argument("no return is free up to " + std::to_string(range) + " m: must be positive and finite");
+  require(limit > 0.0f && std::isfinite(limit), "range up to which no return is free", range,
+          "must be positive and finite");
   for (PixelRanges& pixel : pixels_)
     if (pixel.empty()) pixel = {limit, limit};
   farthest_ = std::max(farthest_, limit);

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/check.h"
 #include "core/parallel.h"
 #include "core/pi.h"
 #include "gaussmap/core/random.h"
@@ -17,30 +18,26 @@ namespace {
 constexpr std::size_t kGrain = 16;  // columns a task
 constexpr double kGrazing = 1e-4;
 
-void require(bool usable, const std::string& what) {
-  if (!usable) throw std::invalid_argument("lidar: " + what);
-}
-
 template <typename Options>
 void checkRanges(const Options& options) {
-  require(options.noise >= 0.0 && std::isfinite(options.noise),
-          "noise = " + std::to_string(options.noise) + ": must be a number of metres, not negative");
-  require(options.max_range > 0.0, "max_range = " + std::to_string(options.max_range) + ": must be positive");
+  require(options.noise >= 0.0 && std::isfinite(options.noise), "noise", options.noise,
+          "must be finite and not negative");
+  require(options.max_range > 0.0, "max_range", options.max_range, "must be positive");
 }
 
 void checkOptions(const LidarOptions& options) {
-  require(options.rings >= 1, "rings = " + std::to_string(options.rings) + ": at least one is needed");
-  require(options.columns >= 1, "columns = " + std::to_string(options.columns) + ": at least one is needed");
-  require(options.lowest_deg > -90.0 && options.lowest_deg <= options.highest_deg && options.highest_deg < 90.0,
-          "elevations from " + std::to_string(options.lowest_deg) + " to " + std::to_string(options.highest_deg) +
-              " degrees: must be within (-90, 90) and ascending");
+  require(options.rings >= 1, "rings", options.rings, "must be at least 1");
+  require(options.columns >= 1, "columns", options.columns, "must be at least 1");
+  require(options.lowest_deg > -90.0, "lowest_deg", options.lowest_deg, "must be above -90 degrees");
+  require(options.lowest_deg <= options.highest_deg && options.highest_deg < 90.0, "highest_deg", options.highest_deg,
+          "must be at least lowest_deg and below 90 degrees");
   checkRanges(options);
 }
 
 void checkOptions(const PlanarLaserOptions& options) {
-  require(options.beams >= 1, "beams = " + std::to_string(options.beams) + ": at least one is needed");
-  require(options.field_deg > 0.0 && options.field_deg <= 360.0,
-          "field_deg = " + std::to_string(options.field_deg) + ": must be above 0 and at most 360");
+  require(options.beams >= 1, "beams", options.beams, "must be at least 1");
+  require(options.field_deg > 0.0 && options.field_deg <= 360.0, "field_deg", options.field_deg,
+          "must be above 0 and at most 360 degrees");
   checkRanges(options);
 }
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/check.h"
 #include "core/pi.h"
 
 namespace gaussmap {
@@ -146,14 +147,13 @@ void checkScene(const Scene& scene) {
 }
 
 std::vector<Eigen::Vector3d> sampleSurface(const Scene& scene, double spacing) {
-  if (!(spacing > 0.0 && std::isfinite(spacing)))
-    throw std::invalid_argument("spacing = " + std::to_string(spacing) + ": must be a positive number of metres");
+  require(spacing > 0.0 && std::isfinite(spacing), "spacing", spacing, "must be a positive number of metres");
   checkScene(scene);
   double area = 0.0;
   for (const Rectangle& rectangle : scene.rectangles) area += rectangle.u.norm() * rectangle.v.norm();
   for (const Cylinder& cylinder : scene.cylinders) area += 2 * kPi * cylinder.radius * cylinder.axis.norm();
-  if (!(area < kMostSurfacePoints * spacing * spacing))
-    throw std::invalid_argument("spacing = " + std::to_string(spacing) + ": that would be more than 10^9 points");
+  require(area < kMostSurfacePoints * spacing * spacing, "spacing", spacing,
+          "must be larger: this would be more than 10^9 points");
   std::vector<Eigen::Vector3d> points;
   points.reserve(static_cast<std::size_t>(area / (spacing * spacing)));
   for (const Rectangle& rectangle : scene.rectangles) append(rectangle, spacing, points);
@@ -163,8 +163,7 @@ std::vector<Eigen::Vector3d> sampleSurface(const Scene& scene, double spacing) {
 
 TriangleMesh triangulate(const Scene& scene, double deviation) {
   checkScene(scene);
-  if (!(deviation > 0.0))
-    throw std::invalid_argument("deviation = " + std::to_string(deviation) + ": must be a positive number of metres");
+  require(deviation > 0.0, "deviation", deviation, "must be a positive number of metres");
   TriangleMesh mesh;
   for (const Rectangle& rectangle : scene.rectangles) append(mesh, rectangleMesh(rectangle));
   for (const Cylinder& cylinder : scene.cylinders) {

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/check.h"
 #include "gaussmap/core/random.h"
 #include "mesh/shapes.h"
 #include "simulation/worlds.h"
@@ -59,8 +60,7 @@ Simulation plan(const SimulationOptions& options) {
 }  // namespace
 
 Simulation makeSimulation(WorldName name, const SimulationOptions& options) {
-  if (options.scans < 0)
-    throw std::invalid_argument("scans = " + std::to_string(options.scans) + ": cannot be negative");
+  require(options.scans >= 0, "scans", options.scans, "must not be negative");
   if (options.moving && name != WorldName::Street && name != WorldName::Avenue)
     throw std::invalid_argument("only street and avenue have moving objects");
   switch (name) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "gaussmap/map/gaussian_map.h"
-#include "gaussmap/map/leaves.h"
+#include "gaussmap/map/queries.h"
 #include "io/export/colours.h"
 
 namespace gaussmap {

@@ -2,7 +2,7 @@
 #include "viewer/glyphs.h"
 
 #include "core/ellipsoid_pose.h"
-#include "gaussmap/map/extent.h"
+#include "gaussmap/map/queries.h"
 #include "map/map_origin.h"
 
 namespace gaussmap {

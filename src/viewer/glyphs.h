@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "gaussmap/map/gaussian_map.h"
-#include "gaussmap/map/leaves.h"
+#include "gaussmap/map/queries.h"
 
 namespace gaussmap {
 

@@ -8,7 +8,7 @@
 
 #include <stdexcept>
 
-#include "gaussmap/map/extent.h"
+#include "gaussmap/map/grid.h"
 #include "io/files/atomic_file.h"
 #include "viewer/off_screen_window.h"
 #include "viewer/viewer_parts.h"

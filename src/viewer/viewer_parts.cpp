@@ -10,7 +10,8 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "gaussmap/map/extent.h"
+#include "core/check.h"
+#include "gaussmap/map/queries.h"
 #include "map/map_origin.h"
 #include "viewer/camera.h"
 #include "viewer/legend.h"
@@ -64,8 +65,9 @@ void Viewer::Parts::check() const {
   if (map() != nullptr && options.scale && (*options.scale < 0 || *options.scale >= map()->scales()))
     throw std::invalid_argument("scale " + std::to_string(*options.scale) + ": the map has the scales 0 to " +
                                 std::to_string(map()->scales() - 1));
-  if (!(options.sigma > 0.0) || !(options.view.zoom > 0.0) || options.sigma > 1e6 || options.view.zoom > 1e6)
-    throw std::invalid_argument("sizes and zooms must be between 0 and a million");
+  require(options.sigma > 0.0 && options.sigma <= 1e6, "sigma", options.sigma, "must be above 0 and at most 1000000");
+  require(options.view.zoom > 0.0 && options.view.zoom <= 1e6, "zoom", options.view.zoom,
+          "must be above 0 and at most 1000000");
   for (const Vector<3>& direction : {options.view.direction, options.up})
     if (!direction.allFinite() || !(direction.norm() > 1e-6))
       throw std::invalid_argument("a direction to look from, and one that is up, must be longer than zero");

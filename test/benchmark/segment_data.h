@@ -8,7 +8,7 @@
 #include "gaussmap/core/random.h"
 #include "gaussmap/io/logs/carmen_log.h"
 #include "gaussmap/segments/planar_scan.h"
-#include "gaussmap/segments/segment.h"
+#include "gaussmap/segments/segment_map.h"
 #include "simulation/simulation.h"
 
 namespace gaussmap::benchmark {

@@ -40,12 +40,9 @@ SegmentFitterOptions policy(EvidencePolicy policy, std::uint64_t seed = 1) {
   return options;
 }
 
-/// The paper to the letter: particles of a segment forgotten at random, a fixed threshold, nothing decided on as a
-/// whole.
-SegmentFitterOptions literal(std::uint64_t seed = 1) {
-  SegmentFitterOptions options = policy(EvidencePolicy::ParticleSets, seed);
-  options.particles.limit = ParticleLimit::Segment;
-  options.prune = options.refine = false;
+SegmentFitterOptions leal2000(std::uint64_t seed = 1) {
+  SegmentFitterOptions options = SegmentFitterOptions::leal2000();
+  options.particles.seed = seed;
   return options;
 }
 
@@ -72,7 +69,7 @@ void holdOut(const Scans& scans) {
   const std::size_t count = std::min(ours.segments.size(), kMostSegments);
   row("moments", ours);
   row("particles", fitMap(even, policy(EvidencePolicy::ParticleSets)));
-  row("the paper, literal", fitMap(even, literal(), std::make_shared<ViewpointInvariantUtility>()));
+  row("the paper, literal", fitMap(even, leal2000(), std::make_shared<ViewpointInvariantUtility>()));
   row("iterative end-point fit", endPointFit(even, count));
   row("RANSAC + total least squares", ransac(even, count));
   std::printf("\n");
@@ -169,7 +166,7 @@ void study(const char* name, const Scans& scans, int seeds) {
       for (int seed = 1; seed <= runs; ++seed) {
         SegmentFitterOptions options = policy(kind, static_cast<std::uint64_t>(seed));
         options.min_length = min_length;
-        options.refine = false;
+        options.optimise = false;
         ViewpointInvariantOptions utility;
         utility.min_length = min_length;
         SegmentFitter fitter(options, std::make_shared<ViewpointInvariantUtility>(utility));
@@ -220,7 +217,7 @@ void viewpoint(const char* name, const Scans& scans) {
   dependent.far.min_length = 3.0;
   const double radius = dependent.radius, away = 3.0 * radius;
   SegmentFitterOptions options;
-  options.refine = false;
+  options.optimise = false;
   SegmentFitter near(options, std::make_shared<ViewpointDependentUtility>(dependent));
   SegmentFitter far(options, std::make_shared<ViewpointInvariantUtility>(dependent.far));
   std::vector<Vector<2>> ahead;  // places that the sensor has not left yet

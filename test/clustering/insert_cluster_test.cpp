@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/clustering/insert_cluster.h"
+#include "gaussmap/clustering/kl_kmeans.h"
 
 #include <gtest/gtest.h>
 

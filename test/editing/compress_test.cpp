@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "editing/ellipsoid.h"
-#include "gaussmap/map/leaves.h"
+#include "gaussmap/map/queries.h"
 #include "gaussmap/map/sampling.h"
 #include "gaussmap/mapping/build.h"
 #include "gaussmap/mapping/refine.h"

@@ -7,7 +7,7 @@
 
 #include "editing/thinned_map.h"
 #include "gaussmap/editing/merge_maps.h"
-#include "gaussmap/map/leaves.h"
+#include "gaussmap/map/queries.h"
 #include "io/gmap/map_equality.h"
 #include "map/inherit_occupancy.h"
 #include "mapping/map_checks.h"

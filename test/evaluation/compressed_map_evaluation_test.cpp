@@ -8,7 +8,6 @@
 #include "editing/thinned_map.h"
 #include "gaussmap/evaluation/hausdorff.h"
 #include "gaussmap/evaluation/held_out.h"
-#include "gaussmap/map/leaves.h"
 #include "gaussmap/map/queries.h"
 #include "gaussmap/mapping/build.h"
 #include "gaussmap/mapping/refine.h"

@@ -137,6 +137,14 @@ TEST(WallScore, RefusesWhatIsNoNumber) {
     options.*option = 0.0;
     EXPECT_THROW(scoreWalls({}, room(), options), std::invalid_argument);
   }
+  WallScoreOptions options;
+  options.tolerance = -1e-9;
+  try {
+    scoreWalls({}, room(), options);
+    ADD_FAILURE() << "accepted";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(), "tolerance = -1e-09: must be positive");
+  }
 }
 
 }  // namespace

@@ -75,6 +75,21 @@ TEST(Grid, CellOfItsCentreIsTheCell) {
   }
 }
 
+TEST(Grid, KnowsTheBoxOfACell) {
+  const Box<2> box = Grid<2>({0.5, 4, 2, 0.0}).boxOf({1, -1}, 1);  // cells of 2 m
+  EXPECT_EQ(box.low, Vector<2>(2.0, -2.0));
+  EXPECT_EQ(box.high, Vector<2>(4.0, 0.0));
+}
+
+TEST(Box, ContainsItsLowSidesButNotItsHighSides) {
+  const Box<2> box{{0.0, 1.0}, {2.0, 3.0}};
+  EXPECT_TRUE(isInBox<2>(box, {0.0, 1.0}));
+  EXPECT_TRUE(isInBox<2>(box, {1.0, 2.5}));
+  EXPECT_FALSE(isInBox<2>(box, {2.0, 2.0}));
+  EXPECT_FALSE(isInBox<2>(box, {1.0, 3.0}));
+  EXPECT_FALSE(isInBox<2>(box, {std::numeric_limits<double>::quiet_NaN(), 2.0}));
+}
+
 TEST(Grid, RefusesPointsThatHaveNoCell) {
   const Grid<3> grid({0.1, 10, 3, 0.0});
   EXPECT_THROW(grid.keyOf({1e12, 0, 0}), std::out_of_range);

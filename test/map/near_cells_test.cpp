@@ -30,6 +30,24 @@ std::vector<std::size_t> nearCells(const GaussianMap<3>& map, std::size_t cell, 
   return found;
 }
 
+TEST(ForKeysAround, VisitsTheKeyAndItsNeighboursTheFirstAxisFastest) {
+  std::vector<CellKey<2>> visited;
+  forKeysAround<2>({5, -1}, [&](const CellKey<2>& key) { visited.push_back(key); });
+  EXPECT_EQ(visited,
+            (std::vector<CellKey<2>>{{4, -2}, {5, -2}, {6, -2}, {4, -1}, {5, -1}, {6, -1}, {4, 0}, {5, 0}, {6, 0}}));
+  std::size_t count = 0;
+  forKeysAround<3>({0, 0, 0}, [&](const CellKey<3>&) { ++count; });
+  EXPECT_EQ(count, 27u);
+}
+
+TEST(ForKeysAround, LeavesOutKeysBeyond32Bits) {
+  constexpr std::int32_t low = std::numeric_limits<std::int32_t>::min();
+  constexpr std::int32_t high = std::numeric_limits<std::int32_t>::max();
+  std::vector<CellKey<2>> visited;
+  forKeysAround<2>({low, high}, [&](const CellKey<2>& key) { visited.push_back(key); });
+  EXPECT_EQ(visited, (std::vector<CellKey<2>>{{low, high - 1}, {low + 1, high - 1}, {low, high}, {low + 1, high}}));
+}
+
 TEST(ForNearCells, FindsEveryCellOfTheRingsOnce) {
   Random random(1);
   std::vector<CellKey<3>> keys;

@@ -42,7 +42,8 @@ TEST(Refine, NamesTheOptionThatItRefuses) {
     }
     return "accepted";
   };
-  EXPECT_EQ(messageFor([](RefineOptions& o) { o.budget = 0.99; }).find("budget"), 0u);
+  EXPECT_EQ(messageFor([](RefineOptions& o) { o.budget = 0.99; }),
+            "budget = 0.99: must be at least 1 Gaussian per cell");
   EXPECT_EQ(messageFor([](RefineOptions& o) { o.budget = std::nan(""); }).find("budget"), 0u);
   EXPECT_EQ(messageFor([](RefineOptions& o) { o.budget = HUGE_VAL; }).find("budget"), 0u);
   EXPECT_EQ(messageFor([](RefineOptions& o) { o.queue = -1; }).find("queue"), 0u);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "gaussmap/sensor/sight.h"
+#include "gaussmap/sensor/visibility.h"
 #include "simulation/lidar.h"
 
 namespace gaussmap {
@@ -66,7 +66,7 @@ TEST(RangeImages, ComeBackFromPclAndSeeTheSame) {
   EXPECT_NEAR(double(back.farthest()), double(there.farthest()), 1e-3);
   for (const double x : {3.0, 6.0, 9.0, 9.9, 10.1, 12.0}) {
     const Eigen::Vector3d point(x, 0.03, 0.02);
-    EXPECT_EQ(look(back, point), look(there, point)) << x;
+    EXPECT_EQ(visibilityOf(back, point), visibilityOf(there, point)) << x;
   }
 }
 

@@ -50,7 +50,7 @@ class FiniteSegmentMap : public testing::TestWithParam<std::tuple<EvidencePolicy
         options.particles.samples = 3;
         options.particles.per_metre = 1.5;
       }
-      options.refine = refine;
+      options.optimise = refine;
       SegmentFitter fitter(options, utility);
       int count = 0;
       for (const LaserScan& scan : planScans()) {

@@ -7,7 +7,7 @@
 
 #include "gaussmap/core/random.h"
 #include "gaussmap/segments/laser_scan.h"
-#include "gaussmap/segments/segment.h"
+#include "gaussmap/segments/segment_map.h"
 
 namespace gaussmap::test {
 

@@ -49,7 +49,7 @@ TEST(SegmentFitter, ARoomIsFourSegmentsInAClosedChain) {
   const std::vector<Segment> walls = room(-3.0, -2.0, 4.0, 3.0);
   for (const bool refine : {false, true}) {
     SegmentFitterOptions options;
-    options.refine = refine;
+    options.optimise = refine;
     const SegmentMap map = mapOf(walls, 40, 0.02, options).map();
     ASSERT_EQ(map.segments.size(), 4u);
     ASSERT_EQ(map.chains.size(), 1u);
@@ -111,7 +111,7 @@ TEST(SegmentFitter, WhatManyRaysCrossIsPruned) {
   for (const bool prune : {true, false}) {
     SegmentFitterOptions options;
     options.prune = prune;
-    options.refine = false;
+    options.optimise = false;
     SegmentFitter fitter(options);
     std::size_t pruned = 0;
     for (int i = 0; i < 40; ++i)
@@ -169,6 +169,18 @@ TEST(SegmentFitter, ParticlesGiveTheSameRoom) {
   const double bound = 300.0 * (24.0 + 12 * 0.25);  // a metre, and a bin or two at each end of a wall
   EXPECT_LT(static_cast<double>(fitter.evidence().size()), bound);
   EXPECT_GT(static_cast<double>(fitter.evidence().size()), 0.5 * bound);
+}
+
+TEST(SegmentFitter, ThePresetIsThePaperAsPrinted) {
+  const SegmentFitterOptions options = SegmentFitterOptions::leal2000();
+  EXPECT_EQ(options.policy, EvidencePolicy::ParticleSets);
+  EXPECT_EQ(options.particles.limit, ParticleLimit::Segment);
+  EXPECT_FALSE(options.prune);
+  EXPECT_FALSE(options.optimise);
+  const std::vector<Segment> walls = room(-3.0, -2.0, 4.0, 3.0);
+  const SegmentFitter fitter = mapOf(walls, 20, 0.02, options, std::make_shared<ViewpointInvariantUtility>());
+  EXPECT_EQ(fitter.map().segments.size(), 4u);
+  EXPECT_LE(static_cast<double>(fitter.evidence().size()), 300.0 * 24.0 * 1.05);  // 300 per metre of wall
 }
 
 TEST(SegmentFitter, MemoryGrowsWithTheMapNotWithTheScans) {
@@ -369,8 +381,28 @@ TEST(SegmentFitter, RefusesUnusableOptions) {
   refused([](SegmentFitterOptions& options) { options.noise.range = -1.0; });
   refused([](SegmentFitterOptions& options) { options.particles.samples = 0; });
   refused([](SegmentFitterOptions& options) { options.particles.per_metre = 0.0; });
-  refused([](SegmentFitterOptions& options) { options.refinement.segment_cost = -1.0; });
-  refused([](SegmentFitterOptions& options) { options.refinement.tolerance = 0.0; });
+  refused([](SegmentFitterOptions& options) { options.optimisation.segment_cost = -1.0; });
+  refused([](SegmentFitterOptions& options) { options.optimisation.tolerance = 0.0; });
+}
+
+TEST(SegmentFitter, SaysWhatIsRequiredOfAnOption) {
+  const auto messageFor = [](auto change) -> std::string {
+    SegmentFitterOptions options;
+    change(options);
+    try {
+      SegmentFitter{options};
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(messageFor([](SegmentFitterOptions& options) { options.cell = -1.0; }), "cell = -1: must be positive");
+  EXPECT_EQ(messageFor([](SegmentFitterOptions& options) { options.growth = -1e-9; }),
+            "growth = -1e-09: must not be negative");
+  EXPECT_EQ(messageFor([](SegmentFitterOptions& options) { options.particles.samples = 0; }),
+            "particles.samples = 0: must be at least 1");
+  EXPECT_EQ(messageFor([](SegmentFitterOptions& options) { options.noise.range = std::nan(""); }),
+            "range noise = nan: must be finite and not negative");
 }
 
 }  // namespace

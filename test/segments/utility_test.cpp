@@ -116,6 +116,12 @@ TEST(Utilities, RefuseOptionsThatAreUnusable) {
   dependent.scale = 0.0;
   EXPECT_THROW(ViewpointDependentUtility{dependent}, std::invalid_argument);
   EXPECT_THROW(DescriptionLengthUtility({std::nan(""), 1.0}), std::invalid_argument);
+  try {
+    DescriptionLengthUtility({-0.25, 1.0});
+    ADD_FAILURE() << "accepted";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(), "sigma = -0.25: must be positive");
+  }
   EXPECT_THROW(CombinedUtility({}), std::invalid_argument);
   EXPECT_THROW(CombinedUtility({{nullptr, 1.0}}), std::invalid_argument);
 }

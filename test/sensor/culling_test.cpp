@@ -64,7 +64,7 @@ TEST(Cullings, NeverHideAPointThatBeamsPassedThrough) {
         hidden_in_view += !may && pixelOf(projection, centre);
         for (int i = 0; i < 20; ++i) {
           const Vector3d point = radius > 0.0 ? randomPointOfBall(random, centre, radius) : centre;
-          if (look(image, point) != Sight::PassedThrough) continue;
+          if (visibilityOf(image, point) != Visibility::PassedThrough) continue;
           ++passed;
           ASSERT_TRUE(may) << "point " << point.transpose() << " of the ball around " << centre.transpose()
                            << " of radius " << radius;
@@ -87,7 +87,7 @@ double farthestAround(const RangeImage& image, const PixelBox& box) {
 }
 
 TEST(Cullings, OverlookNoPixelAndSeldomHideLessThanTheyCould) {
-  const double tolerance = SightOptions().tolerance;
+  const double tolerance = VisibilityOptions().tolerance;
   Random random(2);
   int seen = 0, hidden = 0, too_careful = 0;
   for (const Projection& projection :
@@ -162,8 +162,8 @@ std::vector<std::size_t> passedCells(const GaussianMap<3>& map, const RangeImage
                                      const std::vector<std::size_t>& cells) {
   std::vector<std::size_t> passed;
   for (const std::size_t cell : cells)
-    if (look(image, sensor.rotation.inverse() * (map.gaussian(cell, 0).mean - sensor.translation)) ==
-        Sight::PassedThrough)
+    if (visibilityOf(image, sensor.rotation.inverse() * (map.gaussian(cell, 0).mean - sensor.translation)) ==
+        Visibility::PassedThrough)
       passed.push_back(cell);
   return passed;
 }

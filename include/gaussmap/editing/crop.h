@@ -4,7 +4,6 @@
 #include <functional>
 #include <vector>
 
-#include "gaussmap/map/extent.h"
 #include "gaussmap/map/gaussian_map.h"
 
 namespace gaussmap {
@@ -14,10 +13,6 @@ namespace gaussmap {
 /// match of that. Parts that share nothing merge to the finest scale of the whole again (mergeMaps()).
 template <int D>
 GaussianMap<D> crop(const GaussianMap<D>& map, const std::function<bool(const Vector<D>&)>& isInside);
-
-/// low <= point < high along every axis.
-template <int D>
-bool isInBox(const Box<D>& box, const Vector<D>& point);
 
 /// Is (x, y) of a point inside a polygon, at any height? Corners in order, either way round; where its sides cross, by
 /// the even-odd rule. Polygons that share a side share no point.

@@ -33,6 +33,17 @@ struct MapOptions {
   }
 };
 
+/// An axis-aligned box [m, map frame].
+template <int D>
+struct Box {
+  Vector<D> low;
+  Vector<D> high;
+};
+
+/// low <= point < high along every axis.
+template <int D>
+bool isInBox(const Box<D>& box, const Vector<D>& point);
+
 /// Where cells are: sides, keys, centres, parents. Scale s has cells of side resolution * ratio^s.
 template <int D>
 class Grid {
@@ -67,6 +78,8 @@ class Grid {
 
   /// Centre of a cell [m, map frame].
   Vector<D> centre(const CellKey<D>& key, int scale) const;
+  /// The box of a cell [m, map frame].
+  Box<D> boxOf(const CellKey<D>& key, int scale) const;
 
   /// Centre of a cell minus the centre of its parent [m]: exact wherever the cell is.
   Vector<D> centreInParent(const CellKey<D>& key, int scale) const;

@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "gaussmap/core/pose.h"
-#include "gaussmap/map/log_odds_at.h"
+#include "gaussmap/map/queries.h"
 #include "gaussmap/mapping/accumulate_scans.h"
 
 namespace gaussmap {

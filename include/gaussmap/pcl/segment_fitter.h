@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// header only
 #pragma once
 
 #include <pcl/PointIndices.h>

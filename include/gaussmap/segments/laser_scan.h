@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// header only
 #pragma once
 
 #include <cmath>
@@ -8,11 +9,11 @@
 
 namespace gaussmap {
 
-/// Where a planar sensor stood: p_map = R(heading) p_sensor + translation.
+/// Pose of a planar sensor: p_map = R(heading) p_sensor + translation.
 struct Pose2 {
   Vector<2> translation{0.0, 0.0};  ///< [m], map frame
   double heading = 0.0;             ///< [rad], counter-clockwise
-  /// Of (x, y, heading) in the map frame [m, m, rad]; zero: taken as exact.
+  /// Of (x, y, heading) in the map frame [m, m, rad]; zero: the pose is exact.
   Matrix<3> covariance = Matrix<3>::Zero();
 
   Vector<2> operator*(const Vector<2>& point) const {

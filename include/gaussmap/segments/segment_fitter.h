@@ -22,33 +22,37 @@ enum class EvidencePolicy {
   ParticleSets  ///< a limited number of random particles, Leal 2000 sec. 4.4
 };
 
-/// Which particles go when there are too many.
+/// Which particles are forgotten when there are too many.
 enum class ParticleLimit {
-  Bins,    ///< random ones of the stretch of the segment that has too many
-  Segment  ///< random ones of the whole segment, the paper's: what is looked at drives out what is not
+  Bins,    ///< random ones of each stretch of 0.25 m that has too many
+  Segment  ///< random ones of the whole segment, as in the paper: parts that are seen often displace the others
 };
 
+/// Options of EvidencePolicy::ParticleSets.
 struct ParticleOptions {
-  int samples = 30;          ///< M, particles of an observation, >= 1
-  double per_metre = 300.0;  ///< limit on the particles of a segment, > 0 ...
-  double longest = 10.0;     ///< ... of at most so many minimum lengths (SegmentFitterOptions), > 0
+  int samples = 30;          ///< M, particles per observation, >= 1
+  double per_metre = 300.0;  ///< limit per metre of a segment, of at most 10 SegmentFitterOptions::min_length, > 0
   ParticleLimit limit = ParticleLimit::Bins;
-  double bin = 0.25;  ///< length of the stretches of ParticleLimit::Bins [m], > 0
   std::uint64_t seed = 1;
 };
 
 /// How SegmentFitter::map() chooses the segments that explain the most evidence for what they cost. Costs are in
-/// observations; `average` is what a cell with observations has of them, so that more scans change nothing.
-struct SegmentRefinementOptions {
+/// observations. `average` is the mean number of observations per cell that has any, so costs grow with the evidence.
+struct SegmentOptimisationOptions {
   double tolerance = 0.1;       ///< a segment explains nothing that is farther from its line [m], > 0
-  double segment_cost = 0.525;  ///< of a segment [average], >= 0
-  double cell_cost = 0.006;     ///< of each cell's length of it [average], >= 0
-  double hole_cost = 0.03;      ///< on top where nothing was seen [average], >= 0
-  double crossing_cost = 0.09;  ///< of a ray that went through it [observations], >= 0
+  double segment_cost = 0.525;  ///< per segment [average], >= 0
+  double cell_cost = 0.006;     ///< per cell of its length [average], >= 0
+  double hole_cost = 0.03;      ///< in addition, per cell without evidence [average], >= 0
+  double crossing_cost = 0.09;  ///< per ray that passed through it [observations], >= 0
   int rounds = 2;               ///< of merging, filling and removing, >= 0
 };
 
 struct SegmentFitterOptions {
+  /// Leal 2000 as printed: particles, with a limit per segment; no pruning, no optimisation of the whole map. The
+  /// utility is a parameter of its own; the paper's is eq. [4]:
+  ///   SegmentFitter fitter(SegmentFitterOptions::leal2000(), std::make_shared<ViewpointInvariantUtility>());
+  static SegmentFitterOptions leal2000();
+
   EvidencePolicy policy = EvidencePolicy::MomentCells;
   ParticleOptions particles;  ///< of EvidencePolicy::ParticleSets
   SensorNoise noise;
@@ -58,14 +62,14 @@ struct SegmentFitterOptions {
   double growth = 0.3;          ///< by which the polygon is longer than its segment at both ends [m], >= 0
   double gap = 0.5;             ///< neighbouring beams farther apart are not linked [m], > 0
   bool prune = true;            ///< delete segments that many more rays cross than end on
-  bool refine = true;           ///< map(): decide on all segments together, if the utility is refinable()
-  SegmentRefinementOptions refinement;
+  bool optimise = true;         ///< map(): decide on all segments together, if the utility is optimisable()
+  SegmentOptimisationOptions optimisation;
 };
 
 /// What one add() did, and the map after it: the curves of Leal 2000 Figs. 7 and 8.
 struct SegmentStatistics {
   std::size_t beams = 0;       ///< that returned
-  std::size_t associated = 0;  ///< of them, those that fell to a segment of the map
+  std::size_t associated = 0;  ///< of them, those that belong to a segment of the map
   std::size_t created = 0;     ///< new segments
   std::size_t splits = 0;
   std::size_t merges = 0;
@@ -75,12 +79,19 @@ struct SegmentStatistics {
   double coverage = 0.0;         ///< share of the scan's beams that end within 10 cm of the map after it
 };
 
-/// Builds a map of linked line segments scan by scan, Leal, Scheding, Dissanayake 2000: observations fall to segments,
-/// segments are fitted to what they remember, and utilities decide whether they are split, merged or left alone.
+/// Builds a map of linked line segments scan by scan, after Leal, Scheding, Dissanayake 2000: observations are
+/// associated with segments, segments are fitted to their evidence, and utilities decide whether they are split, merged
+/// or left alone. Four defaults are not those of the paper, because they give better maps:
+/// - the evidence is kept as moments in cells, not as particles (EvidencePolicy);
+/// - a split or merge must shorten the description of the map (DescriptionLengthUtility), not pass a threshold, eq.
+/// [4];
+/// - segments that many rays cross are deleted (SegmentFitterOptions::prune);
+/// - map() optimises all segments together (SegmentFitterOptions::optimise).
+/// SegmentFitterOptions::leal2000() with a ViewpointInvariantUtility is the paper as printed.
 /// Memory grows with the map, not with the scans. One thread; the same scans and seed give the same map.
 class SegmentFitter {
  public:
-  /// Without a utility: DescriptionLengthUtility. Throws std::invalid_argument, naming the option.
+  /// Without a utility: DescriptionLengthUtility. Throws std::invalid_argument, naming the option and what is required.
   explicit SegmentFitter(const SegmentFitterOptions& options = {}, std::shared_ptr<SegmentUtility> utility = {});
   ~SegmentFitter();
   SegmentFitter(SegmentFitter&&) noexcept;
@@ -91,7 +102,7 @@ class SegmentFitter {
   /// as many as ranges or not finite; the scan is then not counted.
   SegmentStatistics add(const LaserScan& scan);
 
-  /// The map as it is now, refined or as add() left it (SegmentFitterOptions::refine).
+  /// The map as it is now, optimised or as add() left it (SegmentFitterOptions::optimise).
   SegmentMap map() const;
   /// What the map's segments remember: their particles, or means of their cells [m], map frame.
   std::vector<Vector<2>> evidence() const;

@@ -22,13 +22,13 @@ struct ObservationPoint {
   double weight = 0.0;
 };
 
-/// Where a beam may have ended: the noise of range, bearing and pose pushed through h of Leal 2000 eq. [1], which is
-/// never linearised.
+/// Where a beam may have ended: the noise of range, bearing and pose propagated through h of Leal 2000 eq. [1] without
+/// linearising it.
 class ObservationModel {
  public:
   virtual ~ObservationModel() = default;
-  /// Points that stand for one beam that returned, the same number for every beam of a scan, into `points`
-  /// (overwritten). `number` tells the observations of a map apart.
+  /// Overwrites `points` with the possible ends of one beam that returned, the same number for every beam of a scan.
+  /// `number` is different for every observation of a map.
   virtual void observe(const LaserScan& scan, std::size_t beam, std::uint64_t number,
                        std::vector<ObservationPoint>& points) const = 0;
 };
@@ -47,9 +47,8 @@ class SampledObservations : public ObservationModel {
   std::uint64_t seed_;
 };
 
-/// Points with the mean and covariance of infinitely many samples: the unscented
-/// transform of (range, bearing, x, y, heading), Julier and Uhlmann 1997 with kappa = 0: ten points, four if the pose
-/// is certain.
+/// Points with the mean and covariance of infinitely many samples, by the unscented transform of (range, bearing, x, y,
+/// heading), Julier and Uhlmann 1997 with kappa = 0: ten points, four if the pose is exact.
 class UnscentedObservations : public ObservationModel {
  public:
   /// Throws std::invalid_argument if the noise is negative or not finite.

@@ -34,9 +34,9 @@ class SegmentUtility {
   virtual void observe(const Vector<2>&) {}
   /// Whether a segment with these ends, without new evidence, is to be decided on again because the observer has moved.
   virtual bool reconsider(const Vector<2>& start, const Vector<2>& end) const;
-  /// Whether a map is finished by what its segments explain, all decided on together (SegmentFitterOptions::refine):
-  /// where the votes are by description length. Other goals would be undone by it.
-  virtual bool refinable() const { return false; }
+  /// Whether SegmentFitter::map() may optimise all segments together (SegmentFitterOptions::optimise). Only where the
+  /// votes are by description length: it would undo what votes for other goals have decided.
+  virtual bool optimisable() const { return false; }
 };
 
 /// Leal 2000 eq. [4]. Votes are 1 for yes and 0 for no, nothing always has 0.5.
@@ -103,7 +103,7 @@ class DescriptionLengthUtility : public SegmentUtility {
   explicit DescriptionLengthUtility(const DescriptionLengthOptions& options = {});
   double split(const SegmentGoals& whole, const SegmentGoals& first, const SegmentGoals& second) const override;
   double merge(const SegmentGoals& first, const SegmentGoals& second, const SegmentGoals& whole) const override;
-  bool refinable() const override { return true; }
+  bool optimisable() const override { return true; }
 
  private:
   DescriptionLengthOptions options_;

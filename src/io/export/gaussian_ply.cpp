@@ -9,8 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "core/check.h"
 #include "core/ellipsoid_pose.h"
-#include "gaussmap/map/leaves.h"
+#include "gaussmap/map/queries.h"
 #include "io/export/colours.h"
 #include "io/files/write_buffer.h"
 #include "map/map_origin.h"
@@ -161,8 +162,7 @@ void writeEllipsoids(WriteBuffer& buffer, const Items& items, double sigma) {
 
 std::size_t writeGaussianPly(const std::filesystem::path& path, const GaussianMap<3>& map,
                              const GaussianPlyOptions& options) {
-  if (!(options.sigma > 0.0) || !std::isfinite(options.sigma))
-    throw std::invalid_argument("sigma = " + std::to_string(options.sigma) + ": half axes must be positive");
+  require(options.sigma > 0.0 && std::isfinite(options.sigma), "sigma", options.sigma, "must be positive and finite");
   const Items items(map, options);
   AtomicFile file(path);
   WriteBuffer buffer(file);

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/check.h"
 #include "gaussmap/io/pcd/map_pcd.h"
 #include "gaussmap/mapping/build.h"
 #include "io/files/atomic_file.h"
@@ -47,7 +48,7 @@ std::map<Corner, GaussianRecords> bySquare(const GaussianRecords& all, int size)
       if (axis == 2) continue;
       const double low = std::floor(static_cast<double>(record.mean[axis]) / size) * size;
       if (!(std::abs(low) < static_cast<double>(std::numeric_limits<std::int32_t>::max() - size)))
-        throw std::out_of_range("a Gaussian at " + std::to_string(mean) + " m: the index has 32-bit metres");
+        throw std::out_of_range("a Gaussian at " + numberText(mean) + " m: the index has 32-bit metres");
       corner[axis] = static_cast<std::int64_t>(low);
     }
     squares[corner].records.push_back(record);
@@ -154,7 +155,7 @@ bool isPlainFinest(const GaussianMap<3>& map, const GaussianRecords& all) {
 }  // namespace
 
 WrittenTiles saveTiles(const GaussianMap<3>& map, const fs::path& folder, const TilesOptions& options) {
-  if (options.size < 1) throw std::invalid_argument("size = " + std::to_string(options.size) + ": at least 1 m");
+  require(options.size >= 1, "size", options.size, "must be at least 1 m");
   const std::map<Corner, GaussianRecords> squares = bySquare(toRecords(map, options.scale), options.size);
   PartFolder part(folder);
   const MapOptions& grid = map.options();

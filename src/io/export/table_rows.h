@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "gaussmap/map/leaves.h"
+#include "gaussmap/map/queries.h"
 
 namespace gaussmap::detail {
 

@@ -13,6 +13,7 @@
 #include <string>
 #include <utility>
 
+#include "core/check.h"
 #include "core/parallel.h"
 #include "io/files/atomic_file.h"
 #include "io/gmap/gain_threshold.h"
@@ -272,9 +273,8 @@ BuiltMapFile buildMapFile(const Scans& scans, const AccumulateOptions& reading, 
                           const std::function<MapMetadata(const PointCounts&)>& metadataOf,
                           const BuildMapFileOptions& options,
                           const std::function<void(const AccumulateProgress&)>& progress) {
-  if (options.max_memory < kLeastBuildMemory)
-    throw std::invalid_argument("max_memory = " + std::to_string(options.max_memory) + ": at least " +
-                                std::to_string(kLeastBuildMemory) + " bytes are needed");
+  require(options.max_memory >= kLeastBuildMemory, "max_memory", static_cast<double>(options.max_memory),
+          "must be at least " + std::to_string(kLeastBuildMemory) + " bytes");
   if (options.refine.method != RefineMethod::Agglomerate)
     throw std::invalid_argument("method: only agglomeration goes tile by tile");
   if (options.save.precision != Precision::Exact) throw std::invalid_argument("precision: build first, then finish");

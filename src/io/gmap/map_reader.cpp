@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/floor_divide.h"
+#include "core/number_text.h"
 #include "core/parallel.h"
 #include "io/gmap/assemble_map.h"
 #include "io/gmap/map_schema.h"
@@ -56,8 +57,8 @@ KeyRange<D> finestCells(const Box<D>& box, double side) {
   };
   for (int axis = 0; axis < D; ++axis) {
     if (!(box.low(axis) <= box.high(axis)))
-      throw std::invalid_argument("the box reaches from " + std::to_string(box.low(axis)) + " to " +
-                                  std::to_string(box.high(axis)) + " m along axis " + std::to_string(axis));
+      throw std::invalid_argument("the box reaches from " + numberText(box.low(axis)) + " to " +
+                                  numberText(box.high(axis)) + " m along axis " + std::to_string(axis));
     range.low[static_cast<std::size_t>(axis)] = keyOf(box.low(axis));
     range.high[static_cast<std::size_t>(axis)] = keyOf(box.high(axis));
   }

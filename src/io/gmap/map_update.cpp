@@ -12,6 +12,7 @@
 #include <string>
 #include <utility>
 
+#include "core/check.h"
 #include "core/parallel.h"
 #include "gaussmap/io/gmap/map_file.h"
 #include "io/files/atomic_file.h"
@@ -283,8 +284,9 @@ void copyTarget(AtomicFile& file) {
 template <int D>
 MapUpdate updateMap(const std::filesystem::path& path, const MomentGrid<D>& added, const UpdateOptions& options,
                     const std::function<void(MapMetadata&)>& edit) {
-  if (options.budget && !(std::isfinite(*options.budget) && *options.budget >= 1.0))
-    throw std::invalid_argument("budget = " + std::to_string(*options.budget) + ": must be at least 1 Gaussian a cell");
+  if (options.budget)
+    require(std::isfinite(*options.budget) && *options.budget >= 1.0, "budget", *options.budget,
+            "must be at least 1 Gaussian per cell");
   growingMapOptions<D>(path);  // complains before a part file is there
   AtomicFile file(path);       // locked from here on: what is read now, nobody else replaces
   copyTarget(file);

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "core/number_text.h"
 #include "core/pi.h"
 #include "io/files/text.h"
 #include "io/files/text_lines.h"
@@ -117,9 +118,9 @@ LaserScan readRobotLaser(Words& words) {
   readPose(words, scan);
   if (n > 1 && step == 0.0) step = field / static_cast<double>(n - 1);
   if (n > 1 && !(step > 0.0 && step * static_cast<double>(n - 1) < 2.0 * kPi + step))
-    throw BadLine(std::to_string(n) + " beams, each " + std::to_string(step) +
+    throw BadLine(std::to_string(n) + " beams, each " + numberText(step) +
                   " rad from the next: the angular step must be above 0 and the fan at most a full turn");
-  if (std::abs(start) > 4.0 * kPi) throw BadLine("the start angle, " + std::to_string(start) + " rad, is no angle");
+  if (std::abs(start) > 4.0 * kPi) throw BadLine("the start angle, " + numberText(start) + " rad, is no angle");
   if (!(max_range > 0.0)) throw BadLine("the maximum range must be above 0");
   setBearings(scan, start, step);
   scan.max_range = max_range > kSickNoReturn && max_range < kSickLimit ? kSickNoReturn : max_range;

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/number_text.h"
 #include "gaussmap/io/pcd/map_pcd.h"
 #include "map/link_cells.h"
 #include "map/map_origin.h"
@@ -118,10 +119,9 @@ GaussianMap<3> fromRecords(const GaussianRecords& all) {
   std::map<int, float> sides;
   for (const GaussianRecord& record : all.records) {
     if (!(record.weight > 0.0f) || !std::isfinite(record.weight))
-      throw std::invalid_argument("a Gaussian of weight " + std::to_string(record.weight));
+      throw std::invalid_argument("a Gaussian of weight " + numberText(record.weight));
     if (!(record.scale >= 0.0f && record.scale < 64.0f) || record.scale != std::floor(record.scale))
-      throw std::invalid_argument("a scale of " + std::to_string(record.scale) +
-                                  ", expected is a whole number below 64");
+      throw std::invalid_argument("a scale of " + numberText(record.scale) + ", expected is a whole number below 64");
     const int scale = static_cast<int>(record.scale);
     if (sides.emplace(scale, record.cell_side).first->second != record.cell_side)
       throw std::invalid_argument("cells of different sides at scale " + std::to_string(scale));

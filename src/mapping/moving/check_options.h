@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <stdexcept>
-#include <string>
-
 #include "gaussmap/mapping/moving/moving_points.h"
 
 namespace gaussmap::detail {
 
-/// Throws std::invalid_argument, naming the option and its value, unless it is usable.
-inline void require(bool usable, const std::string& option, double value, const std::string& rule) {
-  if (!usable) throw std::invalid_argument(option + " = " + std::to_string(value) + ": " + rule);
-}
-
-// What is wrong with options is said before any scan is read. Each stands beside what it is for.
+// Options are checked before any scan is read. Each function is defined beside the code that uses the options.
 void checkOptions(const ScanEvidenceOptions& options);
 void checkOptions(const MovingCellOptions& options, double resolution);
 void checkOptions(const SharedCellOptions& options, double resolution);

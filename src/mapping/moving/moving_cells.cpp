@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "core/check.h"
 #include "map/near_cells.h"
 #include "mapping/moving/check_options.h"
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "core/check.h"
 #include "core/parallel.h"
 #include "gaussmap/core/scans.h"
 #include "mapping/moving/check_options.h"
@@ -43,11 +44,11 @@ OneScan lookAround(const GaussianMap<3>& map, const std::vector<Eigen::Vector3d>
   if (!projection) return result;
   RangeImage image(*projection, scan.points);
   if (options.no_return_is_free) image.noReturnIsFree(*options.no_return_is_free);
-  const Culling culling(image, options.sight);
+  const Culling culling(image, options.visibility);
   const Eigen::Matrix3d to_sensor = scan.pose.rotation.toRotationMatrix().transpose();
   result.counts = visitVisible(MapCells{map}, culling, scan.pose, [&](std::size_t cell) {
     const Eigen::Vector3d mean = to_sensor * (means[cell] - scan.pose.translation);
-    if (look(image, mean, options.sight) == Sight::PassedThrough) result.misses.push_back(cell);
+    if (visibilityOf(image, mean, options.visibility) == Visibility::PassedThrough) result.misses.push_back(cell);
   });
   return result;
 }
@@ -62,8 +63,8 @@ std::vector<Eigen::Vector3d> finestMeans(const GaussianMap<3>& map) {
 
 void detail::checkOptions(const ScanEvidenceOptions& options) {
   require(options.max_range >= 0.0, "max_range", options.max_range, "must not be negative");
-  require(options.sight.tolerance >= 0.0, "tolerance", options.sight.tolerance, "must not be negative");
-  require(options.sight.clearance >= 0.0, "clearance", options.sight.clearance, "must not be negative");
+  require(options.visibility.tolerance >= 0.0, "tolerance", options.visibility.tolerance, "must not be negative");
+  require(options.visibility.clearance >= 0.0, "clearance", options.visibility.clearance, "must not be negative");
   if (options.projection) checkProjection(*options.projection);
   if (options.no_return_is_free) {
     const double range = *options.no_return_is_free;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/check.h"
 #include "core/parallel.h"
 #include "map/near_cells.h"
 #include "mapping/moving/check_options.h"

@@ -84,7 +84,7 @@ Question ask(const OnlineCells<D>& cells, std::uint32_t i, std::uint32_t cluster
 }
 
 bool passes(const Eigen::Vector3d& point, const SensorView& view, const OnlineOptions& options) {
-  return look(view.image, view.toSensor(point), options.sight) == Sight::PassedThrough;
+  return visibilityOf(view.image, view.toSensor(point), options.visibility) == Visibility::PassedThrough;
 }
 
 /// The share of a cluster's samples in its cell that the beams of a view went through.
@@ -162,7 +162,7 @@ template <int D>
 void countMisses(OnlineCells<D>& cells, OnlineScan<D>& scan, const SensorView& view, const OnlineOptions& options,
                  OnlineStatistics& statistics) {
   std::vector<std::vector<std::uint32_t>> seen(static_cast<std::size_t>(cells.scales()));
-  const Culling culling(view.image, options.sight);
+  const Culling culling(view.image, options.visibility);
   const VisibleCells<D> visible(cells, view.pose, options.max_ranges, seen);
   const auto unhit = [&](const OnlineCluster<D>& cluster) {
     return cluster.evidence.hits == 0 || cluster.evidence.last_hit != scan.number;

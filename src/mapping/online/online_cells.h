@@ -10,7 +10,7 @@
 #include "core/key_index.h"
 #include "gaussmap/core/cell_moments.h"
 #include "gaussmap/map/grid.h"
-#include "gaussmap/sensor/evidence.h"
+#include "gaussmap/sensor/visibility.h"
 
 namespace gaussmap::detail {
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/accept_points.h"
+#include "core/check.h"
 #include "mapping/moving/check_options.h"
 #include "mapping/online/online_state.h"
 
@@ -35,7 +36,7 @@ void checkOptions(const OnlineOptions& options) {
   detail::checkOptions(objects, options.map.resolution);
   detail::checkOptions(options.shared, options.map.resolution);
   ScanEvidenceOptions views;
-  views.sight = options.sight;
+  views.visibility = options.visibility;
   views.projection = options.projection;
   views.no_return_is_free = options.no_return_is_free;
   detail::checkOptions(views);

@@ -7,7 +7,7 @@
 
 #include "clustering/undo_merges.h"
 #include "core/parallel.h"
-#include "gaussmap/clustering/insert_cluster.h"
+#include "gaussmap/clustering/kl_kmeans.h"
 #include "mapping/blur.h"
 #include "mapping/cell_error.h"
 #include "mapping/online/online_state.h"

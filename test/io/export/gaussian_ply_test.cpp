@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "gaussmap/io/ply/ply.h"
-#include "gaussmap/map/leaves.h"
+#include "gaussmap/map/queries.h"
 #include "gaussmap/mapping/build.h"
 #include "io/files/file_contents.h"
 #include "io/files/temporary_directory.h"

@@ -5,7 +5,7 @@
 #include "editing/thinned_map.h"
 #include "gaussmap/editing/compress.h"
 #include "gaussmap/io/pcd/map_pcd.h"
-#include "gaussmap/map/leaves.h"
+#include "gaussmap/map/queries.h"
 #include "gaussmap/mapping/refine.h"
 #include "io/gmap/map_file_fixture.h"
 

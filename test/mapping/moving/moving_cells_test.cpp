@@ -171,11 +171,11 @@ TEST(FindMovingCells, NamesTheOptionThatIsNotUsable) {
     return "";
   };
   EXPECT_EQ(refusal([](auto&) {}), "");
-  EXPECT_EQ(refusal([](auto& o) { o.occupancy.hit = 0.0; }), "hit = 0.000000: must be positive");
-  EXPECT_EQ(refusal([](auto& o) { o.occupancy.miss = -1.0; }), "miss = -1.000000: must be positive");
+  EXPECT_EQ(refusal([](auto& o) { o.occupancy.hit = 0.0; }), "hit = 0: must be positive");
+  EXPECT_EQ(refusal([](auto& o) { o.occupancy.miss = -1.0; }), "miss = -1: must be positive");
   EXPECT_EQ(refusal([](auto& o) { o.min_points = kNaN; }), "min_points = nan: must not be negative");
-  EXPECT_EQ(refusal([](auto& o) { o.link = -0.1; }), "link = -0.100000: must be 0 to 1000 cells");
-  EXPECT_EQ(refusal([](auto& o) { o.link = 500.5; }), "link = 500.500000: must be 0 to 1000 cells");
+  EXPECT_EQ(refusal([](auto& o) { o.link = -0.1; }), "link = -0.1: must be 0 to 1000 cells");
+  EXPECT_EQ(refusal([](auto& o) { o.link = 500.5; }), "link = 500.5: must be 0 to 1000 cells");
   EXPECT_EQ(refusal([](auto& o) { o.reach = kNaN; }), "reach = nan: must not be negative");
 }
 

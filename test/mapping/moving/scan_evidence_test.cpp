@@ -161,7 +161,7 @@ TEST_F(GatherEvidence, TakesAPointInTheCellForAHitWhateverOtherBeamsDo) {
   for (std::size_t cell = 0; cell < map.cellCount(0); ++cell) {
     if (evidence.cells[cell].last_hit != 9) continue;
     EXPECT_EQ(evidence.cells[cell].misses, 0u);
-    decided += look(last, map.gaussian(cell, 0).mean) == Sight::PassedThrough;
+    decided += visibilityOf(last, map.gaussian(cell, 0).mean) == Visibility::PassedThrough;
   }
   EXPECT_GT(decided, 0u);
 }
@@ -170,7 +170,7 @@ TEST_F(GatherEvidence, AsksForTheToleranceThatIsGiven) {
   const auto sources = write(roomScans());
   const GaussianMap<3> map = mapOf(PcdScans(sources));
   ScanEvidenceOptions options;
-  options.sight.tolerance = 8.0;  // no wall is so far behind the box
+  options.visibility.tolerance = 8.0;  // no wall is so far behind the box
   for (const Evidence& said : gatherEvidence(map, PcdScans(sources), options).cells) ASSERT_EQ(said.misses, 0u);
 }
 
@@ -337,16 +337,15 @@ TEST_F(GatherEvidence, NamesTheOptionThatIsNotUsable) {
     }
     return "";
   };
-  EXPECT_EQ(refusal([](auto& o) { o.max_range = -1.0; }), "max_range = -1.000000: must not be negative");
+  EXPECT_EQ(refusal([](auto& o) { o.max_range = -1.0; }), "max_range = -1: must not be negative");
   EXPECT_EQ(refusal([](auto& o) { o.max_range = kNaN; }), "max_range = nan: must not be negative");
-  EXPECT_EQ(refusal([](auto& o) { o.sight.tolerance = -0.1; }), "tolerance = -0.100000: must not be negative");
-  EXPECT_EQ(refusal([](auto& o) { o.sight.clearance = kNaN; }), "clearance = nan: must not be negative");
-  EXPECT_EQ(refusal([](auto& o) { o.no_return_is_free = 0.0; }),
-            "no_return_is_free = 0.000000: must be positive and finite");
+  EXPECT_EQ(refusal([](auto& o) { o.visibility.tolerance = -0.1; }), "tolerance = -0.1: must not be negative");
+  EXPECT_EQ(refusal([](auto& o) { o.visibility.clearance = kNaN; }), "clearance = nan: must not be negative");
+  EXPECT_EQ(refusal([](auto& o) { o.no_return_is_free = 0.0; }), "no_return_is_free = 0: must be positive and finite");
   EXPECT_EQ(refusal([](auto& o) {
               o.projection = SphericalProjection{{0.0, 1.0}, 0};
             }),
-            "columns = 0.000000: must be at least 1");
+            "columns = 0: must be at least 1");
 }
 
 }  // namespace

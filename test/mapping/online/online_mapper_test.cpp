@@ -238,7 +238,7 @@ TEST(OnlineMapper, RefusesOptionsThatMeanNothing) {
   EXPECT_THROW(with([](auto& o) { o.fastest_rate = 1e-5; }), std::invalid_argument);
   EXPECT_THROW(with([](auto& o) { o.reach = -1.0; }), std::invalid_argument);
   EXPECT_THROW(with([](auto& o) { o.link = 1e9; }), std::invalid_argument);
-  EXPECT_THROW(with([](auto& o) { o.sight.clearance = kNaN; }), std::invalid_argument);
+  EXPECT_THROW(with([](auto& o) { o.visibility.clearance = kNaN; }), std::invalid_argument);
   EXPECT_THROW(with([](auto& o) { o.no_return_is_free = -1.0; }), std::invalid_argument);
   EXPECT_THROW(with([](auto& o) { o.projection = PlanarProjection{}; }), std::invalid_argument);
 }

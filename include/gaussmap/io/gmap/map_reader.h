@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "gaussmap/io/gmap/map_file.h"
-#include "gaussmap/map/extent.h"
 #include "gaussmap/map/gaussian_map.h"
+#include "gaussmap/map/grid.h"
 
 namespace gaussmap {
 

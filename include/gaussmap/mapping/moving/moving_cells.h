@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "gaussmap/map/gaussian_map.h"
-#include "gaussmap/sensor/evidence.h"
+#include "gaussmap/sensor/visibility.h"
 
 namespace gaussmap {
 

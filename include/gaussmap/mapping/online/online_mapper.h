@@ -13,9 +13,8 @@
 #include "gaussmap/map/gaussian_map.h"
 #include "gaussmap/mapping/moving/moving_cells.h"
 #include "gaussmap/mapping/refine.h"
-#include "gaussmap/sensor/evidence.h"
 #include "gaussmap/sensor/projection.h"
-#include "gaussmap/sensor/sight.h"
+#include "gaussmap/sensor/visibility.h"
 
 namespace gaussmap {
 
@@ -39,7 +38,7 @@ struct OnlineOptions {
   double fastest_rate = 5e-2;  ///< eps_max, at least eps_min, in (0, 1]
 
   OccupancyOptions occupancy;
-  SightOptions sight;
+  VisibilityOptions visibility;
   OccupancySamples samples = OccupancySamples::Mean;
   std::optional<Projection> projection;     ///< of every scan; nothing: found, and again when a scan looks different
   std::optional<double> no_return_is_free;  ///< pixels without return are free space up to this range [m]

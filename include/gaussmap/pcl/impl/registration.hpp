@@ -10,7 +10,7 @@
 #include <exception>
 
 #include "gaussmap/io/pcd/map_pcd.h"
-#include "gaussmap/map/leaves.h"
+#include "gaussmap/map/queries.h"
 
 namespace gaussmap {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/sensor/sight.h"
+#include "gaussmap/sensor/visibility.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -21,18 +21,18 @@ double distanceToSurface(const Eigen::Vector3d& point, const Eigen::Vector3d& a,
 /// one row, one beside the other.
 double clearanceOf(const RangeImage& image, const Eigen::Vector3d& point, Pixel pixel) {
   double least = std::numeric_limits<double>::infinity();
-  const auto look = [&](int row_a, int column_a, int row_b, int column_b) {
+  const auto consider = [&](int row_a, int column_a, int row_b, int column_b) {
     if (image.around(row_a, column_a).empty() || image.around(row_b, column_b).empty()) return;
     least = std::min(
         least, distanceToSurface(point, image.nearestPoint(row_a, column_a), image.nearestPoint(row_b, column_b)));
   };
   if (image.rows() == 1) {
-    look(0, pixel.column - 1, 0, pixel.column);
-    look(0, pixel.column, 0, pixel.column + 1);
+    consider(0, pixel.column - 1, 0, pixel.column);
+    consider(0, pixel.column, 0, pixel.column + 1);
   } else {
     for (int column = pixel.column - 1; column <= pixel.column + 1; ++column) {
-      look(pixel.row - 1, column, pixel.row, column);
-      look(pixel.row, column, pixel.row + 1, column);
+      consider(pixel.row - 1, column, pixel.row, column);
+      consider(pixel.row, column, pixel.row + 1, column);
     }
   }
   return least;
@@ -40,9 +40,9 @@ double clearanceOf(const RangeImage& image, const Eigen::Vector3d& point, Pixel 
 
 }  // namespace
 
-Sight look(const RangeImage& image, const Eigen::Vector3d& point, const SightOptions& options) {
+Visibility visibilityOf(const RangeImage& image, const Eigen::Vector3d& point, const VisibilityOptions& options) {
   const std::optional<Pixel> pixel = pixelOf(image.projection(), point);
-  if (!pixel) return Sight::OutOfView;
+  if (!pixel) return Visibility::OutOfView;
   const int reach = image.rows() > 1 ? 1 : 0;
   int seen = 0;
   float nearest = std::numeric_limits<float>::infinity();
@@ -53,11 +53,11 @@ Sight look(const RangeImage& image, const Eigen::Vector3d& point, const SightOpt
       ++seen;
       nearest = std::min(nearest, ranges.nearest);
     }
-  if (2 * seen < 3 * (2 * reach + 1)) return Sight::NoEvidence;
+  if (2 * seen < 3 * (2 * reach + 1)) return Visibility::NoEvidence;
   const double range = point.norm();
-  if (nearest < range - options.tolerance) return Sight::Hidden;
-  if (nearest <= range + options.tolerance) return Sight::AtSurface;
-  return clearanceOf(image, point, *pixel) < options.clearance ? Sight::AtSurface : Sight::PassedThrough;
+  if (nearest < range - options.tolerance) return Visibility::Hidden;
+  if (nearest <= range + options.tolerance) return Visibility::AtSurface;
+  return clearanceOf(image, point, *pixel) < options.clearance ? Visibility::AtSurface : Visibility::PassedThrough;
 }
 
 }  // namespace gaussmap

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/map/log_odds_at.h"
+#include "gaussmap/map/queries.h"
 
 #include <gtest/gtest.h>
 

@@ -1,30 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "segments/worth.h"
+#include "segments/explained_score.h"
 
 #include <algorithm>
 #include <limits>
 
 namespace gaussmap::detail {
 
-double Worth::explained(const LineMoments& hits, const LineFit& line) const {
+double ExplainedScore::explained(const LineMoments& hits, const LineFit& line) const {
   const double ratio = hits.squaredDistance(line.center, line.normal()) / (tolerance * tolerance);
   return ratio < 1.0 ? hits.n * (1.0 - ratio * ratio * ratio) : 0.0;
 }
 
-double Worth::costOfCell(const std::vector<SegmentCell>& cells, std::size_t i) const {
+double ExplainedScore::costOfCell(const std::vector<SegmentCell>& cells, std::size_t i) const {
   // A single empty cell is no hole: what moves from one row to another may fall to its neighbours.
   const auto empty = [&](std::size_t k) { return k < cells.size() && cells[k].hits.n <= 0.0; };
   const bool hole = empty(i) && ((i > 0 && empty(i - 1)) || empty(i + 1));
   return cell_cost + crossing_cost * cells[i].crossed + (hole ? hole_cost : 0.0);
 }
 
-double Worth::costOf(const std::vector<SegmentCell>& cells) const {
+double ExplainedScore::costOf(const std::vector<SegmentCell>& cells) const {
   double sum = segment_cost;
   for (std::size_t i = 0; i < cells.size(); ++i) sum += costOfCell(cells, i);
   return sum;
 }
 
-double Worth::of(const LiveSegment& segment) const {
+double ExplainedScore::scoreOf(const LiveSegment& segment) const {
   const std::vector<SegmentCell>& cells = segment.evidence.row.cells();
   double sum = -costOf(cells);
   for (const SegmentCell& cell : cells)
@@ -32,21 +32,21 @@ double Worth::of(const LiveSegment& segment) const {
   return sum;
 }
 
-std::vector<CellRange> worthKeeping(const CellRow& row, const LineFit& line, const Worth& worth) {
+std::vector<ScoredRange> bestRanges(const CellRow& row, const LineFit& line, const ExplainedScore& score) {
   const std::vector<SegmentCell>& cells = row.cells();
-  // Of the cells before number i: the highest worth of all choices, and of those that keep cell i - 1, with the cell
-  // that the stretch of that one begins with.
+  // For the cells before number i: the highest score of all choices, and of those that keep cell i - 1, with the first
+  // cell of the range that cell i - 1 is in.
   std::vector<double> best(cells.size() + 1, 0.0), kept(cells.size() + 1, -std::numeric_limits<double>::infinity());
   std::vector<std::size_t> begun(cells.size() + 1, 0);
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    double own = -worth.costOfCell(cells, i);
-    if (cells[i].hits.n > 0.0) own += worth.explained(cells[i].hits, line);
-    const double anew = best[i] - worth.segment_cost;
-    begun[i + 1] = kept[i] >= anew ? begun[i] : i;
-    kept[i + 1] = std::max(kept[i], anew) + own;
+    double own = -score.costOfCell(cells, i);
+    if (cells[i].hits.n > 0.0) own += score.explained(cells[i].hits, line);
+    const double fresh = best[i] - score.segment_cost;
+    begun[i + 1] = kept[i] >= fresh ? begun[i] : i;
+    kept[i + 1] = std::max(kept[i], fresh) + own;
     best[i + 1] = std::max(best[i], kept[i + 1]);
   }
-  std::vector<CellRange> ranges;
+  std::vector<ScoredRange> ranges;
   for (std::size_t i = cells.size(); i > 0;) {
     if (best[i] > best[i - 1]) {
       ranges.push_back({begun[i], i, best[i] - best[begun[i]]});

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/map/leaves.h"
+#include "gaussmap/map/queries.h"
 
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 
 #include "editing/thin_map.h"
-#include "gaussmap/map/extent.h"
 #include "gaussmap/mapping/build.h"
 #include "map/random_clouds.h"
 
