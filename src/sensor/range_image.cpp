@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "core/check.h"
 
 namespace gaussmap {
+using namespace detail;
 
 RangeImage::RangeImage(Projection projection) : projection_(std::move(projection)) {
   checkProjection(projection_);
