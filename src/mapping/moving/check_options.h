@@ -13,7 +13,8 @@ inline void require(bool usable, const std::string& option, double value, const 
   if (!usable) throw std::invalid_argument(option + " = " + std::to_string(value) + ": " + rule);
 }
 
-// What is wrong with options is said before any scan is read. Each stands beside what it is for.
+// Throw std::invalid_argument, before any scan is read. Defined in scan_evidence.cpp, moving_cells.cpp and
+// shared_cells.cpp.
 void checkOptions(const ScanEvidenceOptions& options);
 void checkOptions(const MovingCellOptions& options, double resolution);
 void checkOptions(const SharedCellOptions& options, double resolution);

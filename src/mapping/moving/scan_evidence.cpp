@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/mapping/moving/scan_evidence.h"
+#include "mapping/moving/scan_evidence.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -10,9 +10,7 @@
 #include "mapping/moving/map_cells.h"
 #include "sensor/culling.h"
 
-namespace gaussmap {
-using namespace detail;
-
+namespace gaussmap::detail {
 namespace {
 
 /// What one scan says, before it is summed up in the order of the scans.
@@ -60,7 +58,7 @@ std::vector<Eigen::Vector3d> finestMeans(const GaussianMap<3>& map) {
 
 }  // namespace
 
-void detail::checkOptions(const ScanEvidenceOptions& options) {
+void checkOptions(const ScanEvidenceOptions& options) {
   require(options.max_range >= 0.0, "max_range", options.max_range, "must not be negative");
   require(options.sight.tolerance >= 0.0, "tolerance", options.sight.tolerance, "must not be negative");
   require(options.sight.clearance >= 0.0, "clearance", options.sight.clearance, "must not be negative");
@@ -105,4 +103,4 @@ ScanEvidence gatherEvidence(const GaussianMap<3>& map, const std::vector<ScanSou
   return evidence;
 }
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail
