@@ -11,7 +11,7 @@
 #include "mesh/shapes.h"
 #include "simulation/lidar.h"
 
-namespace gaussmap::benchmark_input {
+namespace gaussmap::benchmark {
 
 /// A straight street, 200 m long: ground, two building fronts, poles every 10 m, seen by a 64-ring lidar every 2 m.
 /// Points in the map frame, in packet order (all rings of a column, then the next column). The drive begins again after
@@ -42,4 +42,4 @@ inline std::vector<Vector<3>> streetPoints(std::size_t count, std::uint64_t firs
   return points;
 }
 
-}  // namespace gaussmap::benchmark_input
+}  // namespace gaussmap::benchmark
