@@ -7,8 +7,6 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "gaussmap/map/gaussian_map.h"
-
 namespace gaussmap::detail {
 
 /// So far cells are looked for, at most [cells]. It takes the cube of it.
@@ -53,14 +51,6 @@ void forNearKeys(const std::array<std::int32_t, N>& key, std::int32_t from, std:
     }
   };
   step(step, 0, true);
-}
-
-/// Calls body(cell) for the finest cells around one, chosen as in forNearKeys().
-template <typename Body>
-void forNearCells(const GaussianMap<3>& map, std::size_t cell, std::int32_t from, std::int32_t to, const Body& body) {
-  forNearKeys(map.scale(0).keys[cell], from, to, [&](const CellKey<3>& near) {
-    if (const auto found = map.find(near, 0)) body(*found);
-  });
 }
 
 }  // namespace gaussmap::detail

@@ -34,6 +34,14 @@ std::uint32_t next(std::uint32_t i, int facets) {
 
 }  // namespace
 
+int facetsWithin(double deviation, double radius) {
+  if (!(deviation > 0.0))
+    throw std::invalid_argument("deviation = " + std::to_string(deviation) + ": must be a positive number of metres");
+  // A chord over the angle 2 a is at most r (1 - cos a) off its arc.
+  const double angle = std::acos(std::max(0.5, 1.0 - deviation / radius));
+  return static_cast<int>(std::min(double(kMaxFacets), std::ceil(kPi / angle)));
+}
+
 TriangleMesh rectangleMesh(const Rectangle& r) {
   return {{r.corner, r.corner + r.u, r.corner + r.u + r.v, r.corner + r.v}, {{0, 1, 2}, {0, 2, 3}}};
 }

@@ -28,6 +28,9 @@ struct Cylinder {
 /// Most facets that go round a shape.
 inline constexpr int kMaxFacets = 100000;
 
+/// Fewest facets (at most kMaxFacets) that stay within `deviation` of a circle of this radius [m].
+int facetsWithin(double deviation, double radius);
+
 TriangleMesh rectangleMesh(const Rectangle& rectangle);
 /// All six sides of the box between two opposite corners [m].
 TriangleMesh boxMesh(const Eigen::Vector3d& low, const Eigen::Vector3d& high);

@@ -68,9 +68,11 @@ Eigen::Vector3d beam(const PlanarLaserOptions& options, int, int number) {
   return {std::cos(bearing), std::sin(bearing), 0.0};
 }
 
-/// `cast` gives what a ray meets first: std::optional<World::Hit>(ray).
-template <typename Options, typename Cast>
-SimulatedScan castAll(const Pose& sensor_pose, const Options& options, std::uint64_t seed, const Cast& cast) {
+template <typename Options>
+SimulatedScan scanWorld(const World& world, const Pose& sensor_pose, const Options& options, std::uint64_t seed,
+                        double time) {
+  checkOptions(options);
+  if (!std::isfinite(time)) throw std::invalid_argument("the time of a scan is not finite");
   if (const std::string fault = poseFault(sensor_pose); !fault.empty())
     throw std::invalid_argument("sensor pose: " + fault);
   SimulatedScan scan;
@@ -85,7 +87,7 @@ SimulatedScan castAll(const Pose& sensor_pose, const Options& options, std::uint
       const Eigen::Vector3d direction = beam(options, ring, static_cast<int>(column));
       const Ray ray{scan.pose.translation, rotation * direction};
       const double noise = options.noise * random.normal();  // drawn for every ray: a new object moves no other point
-      const std::optional<World::Hit> hit = cast(ray);
+      const std::optional<World::Hit> hit = world.intersect(ray, time, options.max_range);
       if (!hit || hit->cosine < kGrazing || hit->range > options.max_range || hit->range + noise <= 0.0) continue;
       part.points.emplace_back((hit->range + noise) * direction);
       part.truth.emplace_back(ray.origin + hit->range * ray.direction);
@@ -100,13 +102,6 @@ SimulatedScan castAll(const Pose& sensor_pose, const Options& options, std::uint
   return scan;
 }
 
-template <typename Options>
-SimulatedScan scanWorld(const World& world, const Pose& pose, const Options& options, std::uint64_t seed, double time) {
-  checkOptions(options);
-  if (!std::isfinite(time)) throw std::invalid_argument("the time of a scan is not finite");
-  return castAll(pose, options, seed, [&](const Ray& ray) { return world.intersect(ray, time, options.max_range); });
-}
-
 }  // namespace
 
 SimulatedScan simulateScan(const World& world, const Pose& sensor_pose, const LidarOptions& options, std::uint64_t seed,
@@ -117,17 +112,6 @@ SimulatedScan simulateScan(const World& world, const Pose& sensor_pose, const Li
 SimulatedScan simulateScan(const World& world, const Pose& sensor_pose, const PlanarLaserOptions& options,
                            std::uint64_t seed, double time) {
   return scanWorld(world, sensor_pose, options, seed, time);
-}
-
-SimulatedScan simulateScan(const Scene& scene, const Pose& sensor_pose, const LidarOptions& options,
-                           std::uint64_t seed) {
-  checkOptions(options);
-  checkScene(scene);
-  return castAll(sensor_pose, options, seed, [&](const Ray& ray) -> std::optional<World::Hit> {
-    const std::optional<double> range = scene.intersect(ray);
-    if (!range) return std::nullopt;
-    return World::Hit{*range, 1.0, SurfaceLabel::Static};
-  });
 }
 
 }  // namespace gaussmap

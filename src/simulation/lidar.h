@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "gaussmap/core/pose.h"
-#include "simulation/scene.h"
 #include "simulation/world.h"
 
 namespace gaussmap {
@@ -19,7 +18,7 @@ struct LidarOptions {
   int columns = 1800;         ///< directions in one turn, >= 1; column 0 looks along x, then counter-clockwise
   double noise = 0.01;        ///< standard deviation of a range [m], >= 0
   double max_range = 60.0;    ///< [m], > 0; farther surfaces give no return
-  int threads = 0;            ///< 0 = all; never shows in the result
+  int threads = 0;            ///< 0 = all cores
 };
 
 /// A planar laser: one fan of beams in the plane z = 0 of the sensor, the middle of the fan along x.
@@ -28,7 +27,7 @@ struct PlanarLaserOptions {
   double field_deg = 180.0;  ///< angle between first and last beam [degree]; 360: a full turn, none twice
   double noise = 0.01;       ///< standard deviation of a range [m], >= 0
   double max_range = 30.0;   ///< [m], > 0; farther surfaces give no return
-  int threads = 0;           ///< 0 = all; never shows in the result
+  int threads = 0;           ///< 0 = all cores
 };
 
 /// One turn of the sensor. Points stand in the order the sensor sends them: column by column, within a column from
@@ -48,8 +47,5 @@ SimulatedScan simulateScan(const World& world, const Pose& sensor_pose, const Li
                            std::uint64_t seed = 1, double time = 0.0);
 SimulatedScan simulateScan(const World& world, const Pose& sensor_pose, const PlanarLaserOptions& options,
                            std::uint64_t seed = 1, double time = 0.0);
-/// The same for few surfaces, cylinders truly round. Scenes must be usable (see checkScene()).
-SimulatedScan simulateScan(const Scene& scene, const Pose& sensor_pose, const LidarOptions& options = {},
-                           std::uint64_t seed = 1);
 
 }  // namespace gaussmap

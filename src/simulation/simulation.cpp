@@ -23,9 +23,9 @@ int count(const SimulationOptions& options, int usual) {
 
 Simulation corner(const SimulationOptions& options) {
   constexpr double kStep = 2.0;  // [s]
-  const std::vector<Pose> poses = demoTrajectory();
+  const std::vector<Pose> poses = cornerTrajectory();
   const int scans = count(options, static_cast<int>(poses.size()));
-  return {World(triangulate(demoScene())), interpolated(poses, scans, kStep), LidarOptions()};
+  return {World(cornerMesh()), interpolated(poses, scans, kStep), LidarOptions()};
 }
 
 /// Street or avenue: the same way through it, the same traffic.

@@ -14,7 +14,7 @@ namespace gaussmap {
 
 /// The built-in worlds. All are turned, so that no wall is aligned with the cells of a map.
 enum class WorldName {
-  Corner,  ///< demoScene(): a floor, two walls and a pole
+  Corner,  ///< a floor of 20 m x 12 m, two walls of 4 m height that meet at a right angle, and a pole
   Street,  ///< 150 m of a street between plane building fronts, with poles, some trees, parked cars and a fence; it
            ///< climbs a little
   Avenue,  ///< the same way between fronts with windows and oriels in relief, with 27 trees, vans and cars, lamps,

@@ -8,9 +8,14 @@
 
 #include "gaussmap/mesh/triangle_mesh.h"
 #include "mesh/mesh_tree.h"
-#include "simulation/scene.h"
 
 namespace gaussmap {
+
+/// A half-line; range r along it is the point origin + r direction.
+struct Ray {
+  Eigen::Vector3d origin;     ///< [m]
+  Eigen::Vector3d direction;  ///< unit length
+};
 
 /// A body that moves on a straight line without turning.
 struct MovingObject {
@@ -21,7 +26,8 @@ struct MovingObject {
 /// What a ray met.
 enum class SurfaceLabel : std::uint32_t { Static = 0, Moving = 1 };
 
-/// A world known exactly: rays meet the very triangles of its meshes, so that a scan without noise lies on them.
+/// A world whose surfaces are known exactly: rays meet the triangles of its meshes, so that a scan without noise lies
+/// on them.
 class World {
  public:
   struct Hit {
@@ -33,10 +39,10 @@ class World {
   /// Throws std::invalid_argument if a mesh has a fault (see checkMesh()) or a velocity is not finite.
   explicit World(TriangleMesh mesh, std::vector<MovingObject> moving = {});
 
-  const TriangleMesh& mesh() const { return mesh_; }  ///< all that stands still
+  const TriangleMesh& mesh() const { return mesh_; }  ///< everything that does not move
   const std::vector<MovingObject>& moving() const { return moving_; }
 
-  /// First surface that the ray meets at that time [s], up to a range [m]; nothing if there is none.
+  /// First surface that the ray meets at that time [s], up to a range [m]; nullopt if there is none.
   std::optional<Hit> intersect(const Ray& ray, double time, double max_range) const;
 
  private:

@@ -4,12 +4,16 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "gaussmap/core/pose.h"
 #include "simulation/blocks.h"
 #include "simulation/path.h"
 #include "simulation/world.h"
 
-// The built-in worlds: each in its own plan, with the pose that turns the plan into the map.
+// The built-in worlds: in the map, or in a plan of their own with the pose that turns the plan into the map.
 namespace gaussmap::simulation {
+
+TriangleMesh cornerMesh();             ///< map: floor, long wall, short wall, pole, in this order
+std::vector<Pose> cornerTrajectory();  ///< map: drives along both walls past the pole, rolling and pitching slightly
 
 Pose streetPlacement();                     ///< of street and avenue
 TriangleMesh streetMesh();                  ///< plan

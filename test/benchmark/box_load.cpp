@@ -1,27 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap_box_load MAP [SIDE]: seconds to load a whole map, and boxes of so many metres all over it, each with a fresh
-// MapReader, so that nothing is cached but the pages of the file.
+// gaussmap_benchmark box-load MAP [SIDE]: seconds to load a whole map, and boxes of so many metres all over it, each
+// with a fresh MapReader, so that only the pages of the file are cached.
+#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <cstdlib>
-#include <iostream>
+#include <memory>
+#include <string>
 #include <vector>
 
+#include "clock.h"
 #include "gaussmap/core/random.h"
 #include "gaussmap/io/gmap/map_reader.h"
+#include "subcommands.h"
 
+namespace gaussmap::benchmark {
 namespace {
 
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-void run(const char* path, double side) {
-  using namespace gaussmap;
-  double start = now();
+void loadBoxes(const std::string& path, double side) {
+  double start = wallSeconds();
   const GaussianMap<3> whole = loadMap<3>(path);
-  const double all = now() - start;
+  const double all = wallSeconds() - start;
   Random random(1);
   std::vector<double> seconds;
   std::size_t cells = 0;
@@ -29,10 +27,10 @@ void run(const char* path, double side) {
     const std::size_t index = random.below(whole.cellCount(0));
     const Vector<3> centre = whole.grid().centre(whole.scale(0).keys[index], 0);
     const Vector<3> half = Vector<3>::Constant(0.5 * side);
-    start = now();
+    start = wallSeconds();
     MapReader<3> reader(path);
     const GaussianMap<3> part = reader.load({centre - half, centre + half});
-    seconds.push_back(now() - start);
+    seconds.push_back(wallSeconds() - start);
     cells += part.cellCount(0);
   }
   std::sort(seconds.begin(), seconds.end());
@@ -46,15 +44,16 @@ void run(const char* path, double side) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  if (argc != 2 && argc != 3) {
-    std::cerr << "usage: gaussmap_box_load MAP [SIDE]\n";
-    return 2;
-  }
-  try {
-    run(argv[1], argc == 3 ? std::strtod(argv[2], nullptr) : 50.0);
-  } catch (const std::exception& error) {
-    std::cerr << "gaussmap_box_load: " << error.what() << '\n';
-    return 1;
-  }
+void addBoxLoad(CLI::App& app) {
+  struct Given {
+    std::string map;
+    double side = 50.0;
+  };
+  const auto given = std::make_shared<Given>();
+  CLI::App& command = *app.add_subcommand("box-load", "seconds to load a whole map, and boxes of it");
+  command.add_option("map", given->map, "map file")->required();
+  command.add_option("side", given->side, "of the boxes [m]")->capture_default_str();
+  command.callback([given] { loadBoxes(given->map, given->side); });
 }
+
+}  // namespace gaussmap::benchmark

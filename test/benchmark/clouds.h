@@ -5,13 +5,13 @@
 #include <pcl/point_types.h>
 
 #include <algorithm>
-#include <ctime>
 #include <filesystem>
 #include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "clock.h"
 #include "gaussmap/io/scans/pcd_scans.h"
 #include "simulation/simulation.h"
 
@@ -45,9 +45,9 @@ template <typename Run>
 double leastSeconds(int runs, const Run& run) {
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < runs; ++i) {
-    const std::clock_t start = std::clock();
+    const double start = processorSeconds();
     run();
-    least = std::min(least, double(std::clock() - start) / CLOCKS_PER_SEC);
+    least = std::min(least, processorSeconds() - start);
   }
   return least;
 }

@@ -5,7 +5,7 @@
 #include "gaussmap/io/pcd/pcd_writer.h"
 #include "measure.h"
 #include "parts.h"
-#include "street_scene.h"
+#include "street_points.h"
 
 namespace gaussmap::benchmark {
 namespace {
@@ -36,7 +36,7 @@ void measureCommands(const Options& options, const std::filesystem::path& work, 
   const std::string gaussmap = std::filesystem::path(options.build) / "apps" / "gaussmap";
   const std::size_t points = options.points.front();
   const std::string cloud = work / "drive.pcd";
-  writePcd(cloud, benchmark_input::streetPoints(points, 0, 1));
+  writePcd(cloud, streetPoints(points, 0, 1));
   for (const std::string leaf : {"0.1", "0.2", "1"}) {
     const auto map = [&](const char* threads) {
       return Command{gaussmap,       "pcd2map", cloud,     "-o",  work / "map.gmap", "--force", "--budget", "1",
@@ -48,8 +48,8 @@ void measureCommands(const Options& options, const std::filesystem::path& work, 
   }
   const std::size_t fewer = std::min<std::size_t>(points, 1000000);
   const std::string a = work / "a.pcd", b = work / "b.pcd";
-  writePcd(a, benchmark_input::streetPoints(fewer, 0, 1));
-  writePcd(b, benchmark_input::streetPoints(fewer, 9, 1));
+  writePcd(a, streetPoints(fewer, 0, 1));
+  writePcd(b, streetPoints(fewer, 9, 1));
   const auto distance = [&](const char* threads) {
     return Command{gaussmap, "hausdorff", a, b, "--frame", "map", "--threads", threads};
   };
@@ -58,19 +58,18 @@ void measureCommands(const Options& options, const std::filesystem::path& work, 
 }
 
 void runOthers(const Options& options, const std::filesystem::path& work, Table& table) {
-  const std::string folder = std::filesystem::path(options.build) / "test" / "benchmark";
-  std::vector<Command> commands = {{"gaussmap_refinement_speed"},
-                                   {"gaussmap_registration_benchmark", "--starts", "3", "--basin", "3"},
-                                   {"gaussmap_normals_benchmark"},
-                                   {"gaussmap_segments_benchmark", "--only-speed"}};
+  const std::string program = std::filesystem::canonical("/proc/self/exe");
+  std::vector<Command> commands = {{program, "refinement-speed"},
+                                   {program, "registration", "--starts", "3", "--basin", "3"},
+                                   {program, "normals"},
+                                   {program, "segments", "--only-speed"}};
   if (!options.data.empty()) {
     for (const std::size_t i : {std::size_t{1}, std::size_t{3}})
       commands[i].insert(commands[i].end(), {"--data", options.data});
     for (const char* cloud : {"kitti_6scans", "rgbd_office_single"}) commands[2].push_back(options.data + "/" + cloud);
   }
   for (Command& command : commands) {
-    const std::string json = work / (command.front() + ".json");
-    command.front() = folder + "/" + command.front();
+    const std::string json = work / (command.at(1) + ".json");
     command.insert(command.end(), {"--json", json});
     measureCommandsInTurn({command}, 1);
     addJson(json, table);

@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The main job on real data: every dataset with and without refinement; sizes, times, distances to its own merged cloud
 # at every scale, the check of weights, and the finest scale against a brute-force reference.
-# Usage: test/benchmark/datasets.sh GAUSSMAP REFERENCE DATA > table.md
-#   GAUSSMAP  the command line, REFERENCE the gaussmap_reference program, DATA a folder with the datasets
+# Usage: test/benchmark/datasets.sh GAUSSMAP BENCHMARK DATA > table.md
+#   GAUSSMAP  the command line, BENCHMARK the gaussmap_benchmark program, DATA a folder with the datasets
 set -euo pipefail
 (($# == 3)) || { sed -n '3,6p' "$0" >&2; exit 2; }
-gaussmap=$1 reference=$2 data=$3
+gaussmap=$1 benchmark=$2 data=$3
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -36,7 +36,7 @@ for dataset in "${datasets[@]}"; do
     # shellcheck disable=SC2086
     "$gaussmap" hausdorff "$map" "$data/$files" $reading --json >"$work/hausdorff.json"
     # shellcheck disable=SC2086
-    ((budget > 1)) || "$reference" "$map" "$data/$files" ${reading:+map} >"$work/reference.txt"
+    ((budget > 1)) || "$benchmark" reference "$map" "$data/$files" ${reading:+map} >"$work/reference.txt"
     python3 - "$name" "$budget" "$work" <<'PY'
 import json, sys
 name, budget, work = sys.argv[1:]

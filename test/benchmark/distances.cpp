@@ -8,7 +8,7 @@
 #include "gaussmap/evaluation/hausdorff.h"
 #include "measure.h"
 #include "parts.h"
-#include "street_scene.h"
+#include "street_points.h"
 
 namespace gaussmap::benchmark {
 namespace {
@@ -31,9 +31,9 @@ double farthest(const Cloud& from, const Cloud::Ptr& to) {
 void measureHausdorff(std::size_t points, int runs, Table& table) {
   const std::pair<const char*, std::uint64_t> others[] = {{"same places, other noise", 80},
                                                           {"the next metres of the drive", 9}};
-  const Cloud::Ptr a = cloudOf(benchmark_input::streetPoints(points, 0, 1));
+  const Cloud::Ptr a = cloudOf(streetPoints(points, 0, 1));
   for (const auto& [name, first_scan] : others) {
-    const Cloud::Ptr b = cloudOf(benchmark_input::streetPoints(points, first_scan, 1));
+    const Cloud::Ptr b = cloudOf(streetPoints(points, first_scan, 1));
     // PCL's clouds are of floats: ours shall see the same points.
     const auto doubles = [](const Cloud& cloud) {
       std::vector<Vector<3>> all;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap_filter_benchmark [DIR or PCD...] [--json FILE]: GaussianMapFilter beside pcl::VoxelGrid, UniformSampling and
-// GridMinimum, each time with as many points. The claim is about coverage: how far the points of the input are from the
-// nearest point that was kept (95 %, mean). The other way, from kept points to the input, is printed beside it: it is 0
-// for whatever keeps points as they are. One thread.
+// gaussmap_benchmark filters [DIR or PCD...] [--json FILE]: GaussianMapFilter beside pcl::VoxelGrid, UniformSampling
+// and GridMinimum, each time with as many points. The claim is about coverage: how far the points of the input are from
+// the nearest point that was kept (95 %, mean). The other way, from kept points to the input, is printed beside it: it
+// is 0 for whatever keeps points as they are. One thread.
 #include <pcl/filters/grid_minimum.h>
 #include <pcl/filters/uniform_sampling.h>
 #include <pcl/filters/voxel_grid.h>
@@ -10,13 +10,14 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
-#include <iostream>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "clouds.h"
 #include "gaussmap/pcl/gaussian_map_filter.h"
 #include "points/nearest_distances.h"
+#include "subcommands.h"
 
 namespace gaussmap::benchmark {
 using namespace detail;
@@ -43,7 +44,7 @@ Distances distancesOf(const Points& from, const Points& to) {
   return {all[all.size() * 95 / 100], std::accumulate(all.begin(), all.end(), 0.0) / double(all.size())};
 }
 
-struct Row {
+struct FilterRow {
   std::string filter;
   std::size_t kept = 0;
   Distances to_kept, to_input;
@@ -102,10 +103,10 @@ class Comparison {
   }
 
   template <typename Filter>
-  Row measure(const std::string& name, Filter& filter, const NamedCloud& input, const Points& points) {
+  FilterRow measure(const std::string& name, Filter& filter, const NamedCloud& input, const Points& points) {
     Cloud kept;
     filter.setInputCloud(input.cloud);
-    Row row;
+    FilterRow row;
     row.filter = name;
     row.seconds = leastSeconds(runs_, [&] { filter.filter(kept); });
     const Points kept_points = finitePoints(kept);
@@ -143,10 +144,10 @@ class Comparison {
       filter.setBudget(budget);
       filter.setOutput(output);
       filter.setNumberOfThreads(1);
-      const Row row = measure(output == FilterOutput::Means ? "GaussianMapFilter" : "GaussianMapFilter, samples",
-                              filter, input, points);
+      const FilterRow row = measure(output == FilterOutput::Means ? "GaussianMapFilter" : "GaussianMapFilter, samples",
+                                    filter, input, points);
       if (output != filter_default_) continue;
-      for (const Row& peer : peers_) {
+      for (const FilterRow& peer : peers_) {
         compared += 2;
         won += std::size_t(row.to_kept.q95 < peer.to_kept.q95) + std::size_t(row.to_kept.mean < peer.to_kept.mean);
       }
@@ -156,29 +157,29 @@ class Comparison {
 
   static constexpr FilterOutput filter_default_ = FilterOutput::Means;
   int runs_;
-  std::vector<Row> peers_;
+  std::vector<FilterRow> peers_;
 };
 
 }  // namespace
-}  // namespace gaussmap::benchmark
 
-int main(int argc, char** argv) try {
-  using namespace gaussmap::benchmark;
-  CLI::App app("GaussianMapFilter beside PCL's filters, with as many points");
-  std::vector<std::string> paths;
-  std::string json;
-  int runs = 3;
-  app.add_option("clouds", paths, "PCD files, or directories of which the first scan counts");
-  app.add_option("--runs", runs, "of which the fastest counts")->check(CLI::Range(1, 100));
-  app.add_option("--json", json, "file for machines");
-  CLI11_PARSE(app, argc, argv);
-  Comparison comparison(runs);
-  for (const NamedCloud& cloud : loadClouds(paths)) comparison.compare(cloud);
-  std::printf("\nGaussianMapFilter nearer (input to kept, 95 %% and mean) in %zu of %zu comparisons\n", comparison.won,
-              comparison.compared);
-  if (!json.empty()) std::ofstream(json) << comparison.json.dump(2) << '\n';
-  return 0;
-} catch (const std::exception& error) {
-  std::cerr << "gaussmap_filter_benchmark: " << error.what() << '\n';
-  return 1;
+void addFilters(CLI::App& app) {
+  struct Given {
+    std::vector<std::string> paths;
+    std::string json;
+    int runs = 3;
+  };
+  const auto given = std::make_shared<Given>();
+  CLI::App& command = *app.add_subcommand("filters", "GaussianMapFilter beside PCL's filters, with as many points");
+  command.add_option("clouds", given->paths, "PCD files, or directories of which the first scan counts");
+  command.add_option("--runs", given->runs, "of which the fastest counts")->check(CLI::Range(1, 100));
+  command.add_option("--json", given->json, "file for machines");
+  command.callback([given] {
+    Comparison comparison(given->runs);
+    for (const NamedCloud& cloud : loadClouds(given->paths)) comparison.compare(cloud);
+    std::printf("\nGaussianMapFilter nearer (input to kept, 95 %% and mean) in %zu of %zu comparisons\n",
+                comparison.won, comparison.compared);
+    if (!given->json.empty()) std::ofstream(given->json) << comparison.json.dump(2) << '\n';
+  });
 }
+
+}  // namespace gaussmap::benchmark

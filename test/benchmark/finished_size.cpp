@@ -3,13 +3,14 @@
 // as many Gaussians as cells, and an octree whose occupied voxels lie as far from the true surface. Samples are
 // spread evenly over the volume of ellipsoids (inside their cells) and of voxels; distances are to the mesh. OctoMap
 // takes the scans as usual, with their rays; once more the end points alone, which knows no free space.
-// Usage: gaussmap_finished_size DIR (of gaussmap simulate street)
+// gaussmap_benchmark finished-size DIR (of gaussmap simulate street)
 #include <octomap/octomap.h>
 
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
+#include <memory>
 #include <numeric>
 
 #include "gaussmap/core/random.h"
@@ -23,11 +24,13 @@
 #include "gaussmap/mapping/refine.h"
 #include "gaussmap/sensor/projection.h"
 #include "mesh/mesh_distance.h"
+#include "subcommands.h"
+
+namespace gaussmap::benchmark {
+using namespace detail;
 
 namespace {
 
-using namespace gaussmap;
-using namespace gaussmap::detail;
 namespace fs = std::filesystem;
 
 constexpr std::size_t kSamples = 100000;
@@ -103,7 +106,7 @@ double compare(const std::vector<Scan>& scans, const MeshDistance& truth, bool r
   }
 }
 
-void run(const fs::path& folder) {
+void compareSizes(const fs::path& folder) {
   std::vector<PcdScan> sources;
   std::vector<Scan> scans;
   for (const fs::path& path : listScans({folder / "scans"})) {
@@ -140,15 +143,12 @@ void run(const fs::path& folder) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  if (argc != 2) {
-    std::cerr << "usage: gaussmap_finished_size DIR (of gaussmap simulate street)\n";
-    return 2;
-  }
-  try {
-    run(argv[1]);
-  } catch (const std::exception& error) {
-    std::cerr << "gaussmap_finished_size: " << error.what() << '\n';
-    return 1;
-  }
+void addFinishedSize(CLI::App& app) {
+  const auto folder = std::make_shared<std::string>();
+  CLI::App& command =
+      *app.add_subcommand("finished-size", "a finished map beside OctoMap's .bt of the same mean error");
+  command.add_option("dir", *folder, "of gaussmap simulate street")->required()->check(CLI::ExistingDirectory);
+  command.callback([folder] { compareSizes(*folder); });
 }
+
+}  // namespace gaussmap::benchmark

@@ -1,25 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap_frame_times MAP: how long a picture takes while a view of a map's scale turns (few triangles, or points
-// where that is slow), and when it stands, with the driver that draws named: what `gaussmap view` feels like. Without a
-// display too, then by software.
+// gaussmap_benchmark frame-times MAP: how long a picture takes while a view of a map's scale turns (few triangles, or
+// points where that is slow), and when it stands, with the driver that draws named: what `gaussmap view` feels like.
+// Without a display too, then by software.
 #include <vtkCamera.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <exception>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "gaussmap/io/gmap/map_file.h"
+#include "subcommands.h"
 #include "viewer/glyphs.h"
 #include "viewer/off_screen_window.h"
 #include "viewer/viewer_parts.h"
 
-namespace gaussmap {
+namespace gaussmap::benchmark {
 namespace {
 
 constexpr int kWidth = 1200, kHeight = 800;
@@ -45,7 +47,7 @@ std::string driverOf(vtkRenderWindow& window) {
   return "unknown";
 }
 
-void measure(const char* path) {
+void measureFrames(const std::string& path) {
   Viewer::Parts parts;
   parts.scene.map = loadMap<3>(path);
   const GaussianMap<3> map = *parts.map();
@@ -73,17 +75,12 @@ void measure(const char* path) {
 }
 
 }  // namespace
-}  // namespace gaussmap
 
-int main(int argc, char** argv) {
-  if (argc != 2) {
-    std::fprintf(stderr, "usage: %s MAP\n", argv[0]);
-    return 2;
-  }
-  try {
-    gaussmap::measure(argv[1]);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 1;
-  }
+void addFrameTimes(CLI::App& app) {
+  const auto map = std::make_shared<std::string>();
+  CLI::App& command = *app.add_subcommand("frame-times", "how long a picture of a map takes");
+  command.add_option("map", *map, "map file")->required();
+  command.callback([map] { measureFrames(*map); });
 }
+
+}  // namespace gaussmap::benchmark

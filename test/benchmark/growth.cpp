@@ -7,7 +7,7 @@
 #include "gaussmap/mapping/build.h"
 #include "measure.h"
 #include "parts.h"
-#include "street_scene.h"
+#include "street_points.h"
 
 namespace gaussmap::benchmark {
 namespace {
@@ -40,7 +40,7 @@ Fit fit(const std::vector<double>& x, const std::vector<double>& y, const std::v
 void grow(const char* name, const std::vector<std::size_t>& counts, bool is_wide, Table& table) {
   std::vector<double> points, cells, seconds, megabytes;
   for (const std::size_t count : counts) {
-    Cloud::Ptr cloud = cloudOf(benchmark_input::streetPoints(count, 0, 1));
+    Cloud::Ptr cloud = cloudOf(streetPoints(count, 0, 1));
     if (is_wide) cloud = spread(*cloud);
     const auto work = [&] {
       const MomentGrid<3> sums =

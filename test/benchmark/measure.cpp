@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <exception>
 #include <fstream>
@@ -17,12 +16,10 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "clock.h"
+
 namespace gaussmap::benchmark {
 namespace {
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// A line of /proc/self/status [MB].
 double statusMegabytes(const std::string& name) {
@@ -37,14 +34,14 @@ double statusMegabytes(const std::string& name) {
   try {
     std::ofstream("/proc/self/clear_refs") << 5;  // the peak begins anew
     const double before = statusMegabytes("VmRSS");
-    double start = now();
+    double start = wallSeconds();
     measured.value = work();
-    measured.seconds = now() - start;
+    measured.seconds = wallSeconds() - start;
     measured.megabytes = std::max(0.0, statusMegabytes("VmHWM") - before);
     if (how == Start::Warm) {
-      start = now();
+      start = wallSeconds();
       work();
-      measured.seconds = now() - start;
+      measured.seconds = wallSeconds() - start;
     }
   } catch (const std::exception& error) {
     std::fprintf(stderr, "gaussmap_benchmark: %s\n", error.what());
@@ -75,7 +72,7 @@ Measured ofCommand(const std::vector<std::string>& words) {
   std::vector<char*> arguments;
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
-  const double start = now();
+  const double start = wallSeconds();
   const pid_t id = fork();
   if (id == 0) {
     const int nothing = open("/dev/null", O_WRONLY);
@@ -92,7 +89,7 @@ Measured ofCommand(const std::vector<std::string>& words) {
     for (const std::string& word : words) text << word << ' ';
     throw std::runtime_error(text.str() + (status == 127 << 8 ? "is not installed" : "failed"));
   }
-  return {now() - start, static_cast<double>(used.ru_maxrss) / 1024.0, 0.0};
+  return {wallSeconds() - start, static_cast<double>(used.ru_maxrss) / 1024.0, 0.0};
 }
 
 template <typename Work, typename Run>

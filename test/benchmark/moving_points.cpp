@@ -1,30 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Moving objects: gaussmap clean, pcd2map --online, and OctoMap (insertPointCloud with rays, points of free cells
 // removed) on the same scans, one thread, at 0.2 and 0.1 m. SA, DA, AA in percent against the field `label` (without
-// one all points count as static), seconds a scan without reading. Usage: gaussmap_moving_points DIR...
+// one all points count as static), seconds a scan without reading. gaussmap_benchmark moving-points DIR...
 #include <octomap/octomap.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <functional>
-#include <iostream>
+#include <memory>
 #include <set>
+#include <string>
+#include <vector>
 
+#include "clock.h"
 #include "evaluation/removal_score.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
 #include "gaussmap/io/scans/pcd_scans.h"
 #include "gaussmap/mapping/moving/moving_points.h"
 #include "gaussmap/mapping/online/online_mapper.h"
+#include "subcommands.h"
+
+namespace gaussmap::benchmark {
+using namespace detail;
 
 namespace {
-
-using namespace gaussmap;
-using namespace gaussmap::detail;
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 struct Sequence {
   std::vector<PcdScan> sources;
@@ -65,9 +65,9 @@ void clean(const Sequence& sequence, double resolution) {
   MovingPointOptions options;
   options.resolution = resolution;
   options.evidence.threads = 1;
-  const double start = now();
+  const double start = wallSeconds();
   const MovingPoints moving(sequence.sources, options);
-  const double seconds = now() - start;
+  const double seconds = wallSeconds() - start;
   std::vector<std::vector<bool>> flags;
   for (std::size_t s = 0; s < sequence.scans.size(); ++s) flags.push_back(moving.inScan(s));
   print("clean (with reading)", sequence.score([&](auto s, auto p) { return flags[s][p]; }), seconds,
@@ -83,7 +83,7 @@ double online(const Sequence& sequence, double resolution) {
     if (cluster.scale == 0) touched.insert(cluster.key);
   });
   OnlineStatistics sum;
-  const double start = now();
+  const double start = wallSeconds();
   for (const Scan& scan : sequence.scans) {
     const OnlineStatistics one = mapper.add(scan);
     sum.update_time += one.update_time;
@@ -93,7 +93,7 @@ double online(const Sequence& sequence, double resolution) {
     sum.forget_time += one.forget_time;
     sum.refine_time += one.refine_time;
   }
-  const double seconds = now() - start;
+  const double seconds = wallSeconds() - start;
   const GaussianMap<3> map = mapper.map();
   print("pcd2map --online", sequence.score([&](auto s, auto p) {
     // Gone with its cell; or, where a part of a cell was deleted, beyond three standard deviations of what is left.
@@ -122,9 +122,9 @@ double octomapWithRays(const Sequence& sequence, double resolution) {
       cloud.push_back(point.x(), point.y(), point.z());
     }
     const Eigen::Vector3f origin = sequence.scans[s].pose.translation.cast<float>();
-    const double start = now();
+    const double start = wallSeconds();
     tree.insertPointCloud(cloud, octomap::point3d(origin.x(), origin.y(), origin.z()));
-    seconds += now() - start;
+    seconds += wallSeconds() - start;
   }
   print("OctoMap with rays", sequence.score([&](auto s, auto p) {
     const Eigen::Vector3f point = sequence.inMap(s, p).template cast<float>();
@@ -137,24 +137,22 @@ double octomapWithRays(const Sequence& sequence, double resolution) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  if (argc < 2) {
-    std::cerr << "usage: gaussmap_moving_points DIR... (directories of PCD scans)\n";
-    return 2;
-  }
-  try {
-    for (int i = 1; i < argc; ++i) {
-      const Sequence sequence(argv[i]);
+void addMovingPoints(CLI::App& app) {
+  const auto folders = std::make_shared<std::vector<std::string>>();
+  CLI::App& command = *app.add_subcommand("moving-points", "moving objects: clean, pcd2map --online and OctoMap");
+  command.add_option("dir", *folders, "directories of PCD scans")->required();
+  command.callback([folders] {
+    for (const std::string& folder : *folders) {
+      const Sequence sequence(folder);
       for (const double resolution : {0.2, 0.1}) {
-        std::printf("%s, %zu scans, %.1f m\n", argv[i], sequence.scans.size(), resolution);
+        std::printf("%s, %zu scans, %.1f m\n", folder.c_str(), sequence.scans.size(), resolution);
         clean(sequence, resolution);
         const double ours = online(sequence, resolution);
         const double theirs = octomapWithRays(sequence, resolution);
         std::printf("  OctoMap's time / pcd2map --online: %.1f\n", theirs / ours);
       }
     }
-  } catch (const std::exception& error) {
-    std::cerr << "gaussmap_moving_points: " << error.what() << '\n';
-    return 1;
-  }
+  });
 }
+
+}  // namespace gaussmap::benchmark

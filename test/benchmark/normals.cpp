@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap_normals_benchmark [DIR or PCD...] [--json FILE]: GaussianMapNormalEstimation beside pcl::NormalEstimationOMP
+// gaussmap_benchmark normals [DIR or PCD...] [--json FILE]: GaussianMapNormalEstimation beside pcl::NormalEstimationOMP
 // (20 neighbours): times with one and two threads, and the angle between their normals. Of the simulated street the
 // angles to the true normals too.
 #include <pcl/features/normal_3d_omp.h>
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
-#include <iostream>
+#include <memory>
 
+#include "clock.h"
 #include "clouds.h"
 #include "gaussmap/pcl/normal_estimation.h"
 #include "mesh/mesh_tree.h"
+#include "subcommands.h"
 #include "table.h"
 
 namespace gaussmap::benchmark {
@@ -24,13 +24,6 @@ namespace {
 using Normals = pcl::PointCloud<pcl::Normal>;
 
 constexpr int kNeighbours = 20;
-
-double wallSeconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-double processorSeconds() {
-  return double(std::clock()) / CLOCKS_PER_SEC;
-}
 
 double degrees(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
   return 180.0 / M_PI * std::acos(std::min(1.0, std::abs(double(a.dot(b)))));
@@ -133,32 +126,32 @@ void compareWithTruth(Table& table) {
 }
 
 }  // namespace
-}  // namespace gaussmap::benchmark
 
-int main(int argc, char** argv) try {
-  using namespace gaussmap::benchmark;
-  CLI::App app("GaussianMapNormalEstimation beside pcl::NormalEstimationOMP");
-  std::vector<std::string> paths;
-  std::string json;
-  int runs = 5;
-  app.add_option("clouds", paths, "PCD files, or directories of which the first scan counts");
-  app.add_option("--runs", runs, "of which the fastest counts")->check(CLI::Range(1, 100));
-  app.add_option("--json", json, "file for machines");
-  CLI11_PARSE(app, argc, argv);
-  Table table;
-  std::printf(
-      "| %-32s | points  | threads | pcl [ms] | ours [ms] | pcl / ours | angle between them, median [degrees] | 75 %% "
-      "| "
-      "90 %% |\n|---|---|---|---|---|---|---|---|---|\n",
-      "cloud");
-  for (const NamedCloud& cloud : loadClouds(paths)) {
-    compare(cloud, runs, table);
-    if (cloud.cloud->isOrganized()) compare(asList(cloud), runs, table);
-  }
-  compareWithTruth(table);
-  if (!json.empty()) writeJson(json, table);
-  return 0;
-} catch (const std::exception& error) {
-  std::cerr << "gaussmap_normals_benchmark: " << error.what() << '\n';
-  return 1;
+void addNormals(CLI::App& app) {
+  struct Given {
+    std::vector<std::string> paths;
+    std::string json;
+    int runs = 5;
+  };
+  const auto given = std::make_shared<Given>();
+  CLI::App& command = *app.add_subcommand("normals", "GaussianMapNormalEstimation beside pcl::NormalEstimationOMP");
+  command.add_option("clouds", given->paths, "PCD files, or directories of which the first scan counts");
+  command.add_option("--runs", given->runs, "of which the fastest counts")->check(CLI::Range(1, 100));
+  command.add_option("--json", given->json, "file for machines");
+  command.callback([given] {
+    Table table;
+    std::printf(
+        "| %-32s | points  | threads | pcl [ms] | ours [ms] | pcl / ours | angle between them, median [degrees] | 75 "
+        "%% "
+        "| 90 %% |\n|---|---|---|---|---|---|---|---|---|\n",
+        "cloud");
+    for (const NamedCloud& cloud : loadClouds(given->paths)) {
+      compare(cloud, given->runs, table);
+      if (cloud.cloud->isOrganized()) compare(asList(cloud), given->runs, table);
+    }
+    compareWithTruth(table);
+    if (!given->json.empty()) writeJson(given->json, table);
+  });
 }
+
+}  // namespace gaussmap::benchmark

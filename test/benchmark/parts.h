@@ -15,7 +15,7 @@ namespace gaussmap::benchmark {
 
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
-/// A cloud that everybody is measured on.
+/// A cloud that all methods are measured on.
 struct Input {
   std::string name;
   Cloud::Ptr cloud;
@@ -25,8 +25,8 @@ Cloud::Ptr cloudOf(const std::vector<Vector<3>>& points);
 
 struct Options {
   std::vector<std::size_t> points = {5000000, 20000000};  ///< of the simulated drive
-  std::string data;                                       ///< directory with kitti_6scans and so on; empty: none
-  std::string build;                                      ///< directory of the other programs of the benchmark
+  std::string data;                                       ///< directory with kitti_6scans and so on; may be empty
+  std::string build;                                      ///< build directory, with apps/gaussmap
   int runs = 5;                                           ///< the fastest counts; three of more than ten million points
 };
 
@@ -42,9 +42,9 @@ void measureReading(const Cloud& cloud, const std::filesystem::path& work, int r
 void measureHausdorff(std::size_t points, int runs, Table& table);
 /// Scan by scan beside OctoMap with rays.
 void measureOnline(const Options& options, Table& table);
-/// Whole commands beside pcl-tools; nothing where these are not installed.
+/// Whole commands beside pcl-tools; does nothing if these are not installed.
 void measureCommands(const Options& options, const std::filesystem::path& work, Table& table);
-/// What the other programs of the benchmark measure.
+/// What other subcommands measure: refinement-speed, registration, normals, segments.
 void runOthers(const Options& options, const std::filesystem::path& work, Table& table);
 /// Time and memory against numbers of points and cells, fitted.
 void measureGrowth(const std::vector<std::size_t>& points, Table& table);

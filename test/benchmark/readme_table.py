@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Puts the figures of gaussmap_benchmark --json into a Markdown file, between its two lines
+"""Puts the figures of gaussmap_benchmark table --json into a Markdown file, between its two lines
 <!-- benchmark: begin --> and <!-- benchmark: end -->. Usage: readme_table.py FIGURES.json FILE.md [WITHOUT...]
 Rows whose input contains one of the words WITHOUT are left out."""
 import json

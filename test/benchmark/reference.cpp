@@ -1,32 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap_reference MAP SCANS [map]: the finest scale of a map against its definition, in long double, with nothing of
-// the map's own code but the reading of files: cell = floor(p / side), mean and covariance of the points in it.
-// Exit code 1 if a cell, a count, a mean (1e-5 sides) or a covariance (1e-5 sides^2) differs.
+// gaussmap_benchmark reference MAP SCANS [map]: the finest scale of a map against its definition, in long double, using
+// the map's own code only to read files: cell = floor(p / side), mean and covariance of the points in it.
+// Fails if a cell, a count, a mean (1e-5 sides) or a covariance (1e-5 sides^2) differs.
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
 
 #include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
 #include "gaussmap/io/scans/pcd_scans.h"
 #include "gaussmap/mapping/accumulate_scans.h"
+#include "subcommands.h"
 
-using namespace gaussmap;
+namespace gaussmap::benchmark {
+namespace {
 
-int main(int argc, char** argv) {
-  if (argc != 3 && argc != 4) {
-    std::fprintf(stderr, "usage: gaussmap_reference MAP SCANS [map]\n");
-    return 2;
-  }
-  const GaussianMapOctree map = loadMap<3>(argv[1]);
+void compareWithReference(const std::string& map_file, const std::string& folder, ScanFrame frame) {
+  const GaussianMapOctree map = loadMap<3>(map_file);
   std::vector<PcdScan> scans;
-  for (const auto& path : listScans({argv[2]})) scans.push_back({path, normalised(PcdReader(path).header().viewpoint)});
+  for (const auto& path : listScans({folder})) scans.push_back({path, normalised(PcdReader(path).header().viewpoint)});
   AccumulateOptions options;
 
   // Points within half a lattice step of a border may stand on either side of it: there the map decides.
   const long double side = static_cast<long double>(map.options().resolution), half_step = 0x1.0p-17L;
   std::map<CellKey<3>, std::vector<Vector<3>>> cells;
-  for (const Vector<3>& point : readPoints(PcdScans(scans, argc == 4 ? ScanFrame::Map : ScanFrame::Sensor), options)) {
+  for (const Vector<3>& point : readPoints(PcdScans(scans, frame), options)) {
     CellKey<3> key;
     for (int axis = 0; axis < 3; ++axis) {
       const long double exact = static_cast<long double>(point(axis)) / side;
@@ -70,5 +72,23 @@ int main(int argc, char** argv) {
   same = same && mean_error <= 1e-5L && cov_error <= 1e-5L;
   std::printf("%s, %zu cells, mean %.1Le, covariance %.1Le\n", same ? "equal" : "DIFFERENT", cells.size(), mean_error,
               cov_error);
-  return same ? 0 : 1;
+  if (!same) throw std::runtime_error(map_file + ": differs from the reference");
 }
+
+}  // namespace
+
+void addReference(CLI::App& app) {
+  struct Given {
+    std::string map, scans, frame;
+  };
+  const auto given = std::make_shared<Given>();
+  CLI::App& command = *app.add_subcommand("reference", "the finest scale of a map against its definition");
+  command.add_option("map", given->map, "map file")->required();
+  command.add_option("scans", given->scans, "directory or PCD file that it was built from")->required();
+  command.add_option("frame", given->frame, "map: the scans are in the map frame")->check(CLI::IsMember({"map"}));
+  command.callback([given] {
+    compareWithReference(given->map, given->scans, given->frame.empty() ? ScanFrame::Sensor : ScanFrame::Map);
+  });
+}
+
+}  // namespace gaussmap::benchmark

@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap_refinement_speed [--scans 0] [--runs 5] [--json FILE]: seconds of agglomerative refinement on the simulated
-// street, one thread: the coarsest scale, and a middle scale of about 250,000 finest Gaussians; the clustering alone
-// beside scalar code with logarithms on the same data. Shortest of the runs, which take turns.
+// gaussmap_benchmark refinement-speed [--scans 0] [--runs 5] [--json FILE]: seconds of agglomerative refinement on the
+// simulated street, one thread: the coarsest scale, and a middle scale of about 250,000 finest Gaussians; the
+// clustering alone beside scalar code with logarithms on the same data. Shortest of the runs, which take turns.
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 
+#include "clock.h"
 #include "gaussmap/mapping/build.h"
 #include "gaussmap/mapping/refine.h"
 #include "map/coarsen.h"
 #include "mapping/blur.h"
 #include "refinement_data.h"
 #include "scalar_agglomerate.h"
+#include "subcommands.h"
 #include "table.h"
 
 namespace gaussmap::refinement {
@@ -28,9 +30,9 @@ constexpr double kBudget = 3.4;
 
 template <typename Work>
 double seconds(const Work& work) {
-  const auto start = std::chrono::steady_clock::now();
+  const double start = benchmark::wallSeconds();
   work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return benchmark::wallSeconds() - start;
 }
 
 /// What a coarse cell's refinement starts from.
@@ -161,17 +163,19 @@ void run(int scans, int runs, const std::string& json) {
 }  // namespace
 }  // namespace gaussmap::refinement
 
-int main(int argc, char** argv) try {
-  int scans = 0, runs = 5;
-  std::string json;
-  CLI::App app("Seconds of agglomerative refinement");
-  app.add_option("--scans", scans, "of the street; 0: as many as it has")->check(CLI::Range(0, 1000));
-  app.add_option("--runs", runs, "the shortest counts")->check(CLI::Range(1, 1000))->capture_default_str();
-  app.add_option("--json", json, "write the figures for machines");
-  CLI11_PARSE(app, argc, argv);
-  gaussmap::refinement::run(scans, runs, json);
-  return 0;
-} catch (const std::exception& error) {
-  std::fprintf(stderr, "gaussmap_refinement_speed: %s\n", error.what());
-  return 1;
+namespace gaussmap::benchmark {
+
+void addRefinementSpeed(CLI::App& app) {
+  struct Given {
+    int scans = 0, runs = 5;
+    std::string json;
+  };
+  const auto given = std::make_shared<Given>();
+  CLI::App& command = *app.add_subcommand("refinement-speed", "seconds of agglomerative refinement");
+  command.add_option("--scans", given->scans, "of the street; 0: as many as it has")->check(CLI::Range(0, 1000));
+  command.add_option("--runs", given->runs, "the shortest counts")->check(CLI::Range(1, 1000))->capture_default_str();
+  command.add_option("--json", given->json, "write the figures for machines");
+  command.callback([given] { refinement::run(given->scans, given->runs, given->json); });
 }
+
+}  // namespace gaussmap::benchmark

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap_refinement_table [--data DIR] [--seeds 3] [--scans 0] [--json FILE]: how far samples of the coarsest scale
-// lie from the data at equal numbers of Gaussians, for the refinements that gaussmap has, one Gaussian per cell and a
-// uniform grid. Seeds are those of the simulated noise, the random method and the sampling. The exit code is 0 whether
-// the goals are met or not.
+// gaussmap_benchmark refinement-table [--data DIR] [--seeds 3] [--scans 0] [--json FILE]: how far samples of the
+// coarsest scale lie from the data at equal numbers of Gaussians, for the refinements that gaussmap has, one Gaussian
+// per cell and a uniform grid. Seeds are those of the simulated noise, the random method and the sampling. The exit
+// code is 0 whether the goals are met or not.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 
@@ -13,6 +14,7 @@
 #include "gaussmap/mapping/refine.h"
 #include "mesh/mesh_distance.h"
 #include "refinement_report.h"
+#include "subcommands.h"
 #include "uniform_grid.h"
 
 namespace gaussmap::refinement {
@@ -151,18 +153,17 @@ void run(const Options& options) {
 }  // namespace
 }  // namespace gaussmap::refinement
 
-int main(int argc, char** argv) try {
-  gaussmap::refinement::Options options;
-  CLI::App app("Refinement at equal numbers of Gaussians");
-  app.add_option("--data", options.data, "folder with kitti_6scans, rgbd_office_single, octomap_geb079")
+namespace gaussmap::benchmark {
+
+void addRefinementTable(CLI::App& app) {
+  const auto options = std::make_shared<refinement::Options>();
+  CLI::App& command = *app.add_subcommand("refinement-table", "refinement at equal numbers of Gaussians");
+  command.add_option("--data", options->data, "folder with kitti_6scans, rgbd_office_single, octomap_geb079")
       ->check(CLI::ExistingDirectory);
-  app.add_option("--seeds", options.seeds, "of every figure")->check(CLI::Range(1, 1000))->capture_default_str();
-  app.add_option("--scans", options.scans, "of the streets; 0: as many as they have")->check(CLI::Range(0, 1000));
-  app.add_option("--json", options.json, "file to write all figures of all seeds to");
-  CLI11_PARSE(app, argc, argv);
-  gaussmap::refinement::run(options);
-  return 0;
-} catch (const std::exception& error) {
-  std::fprintf(stderr, "gaussmap_refinement_table: %s\n", error.what());
-  return 1;
+  command.add_option("--seeds", options->seeds, "of every figure")->check(CLI::Range(1, 1000))->capture_default_str();
+  command.add_option("--scans", options->scans, "of the streets; 0: as many as they have")->check(CLI::Range(0, 1000));
+  command.add_option("--json", options->json, "file to write all figures of all seeds to");
+  command.callback([options] { refinement::run(*options); });
 }
+
+}  // namespace gaussmap::benchmark

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap_registration_benchmark [--data DIR] [--starts 3] [--basin 10] [--json FILE]: a scan onto a scan, beside
+// gaussmap_benchmark registration [--data DIR] [--starts 3] [--basin 10] [--json FILE]: a scan onto a scan, beside
 // PCL's NDT and GICP. DIR has the directories kitti_6scans, mulran_kaist03_21scans and dtk_indoor_3scans; what is
 // missing is said and left out; the simulated street is always there. One thread, processor time. Prints tables in
 // Markdown.
@@ -8,9 +8,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <ctime>
+#include <memory>
 
+#include "clock.h"
 #include "registration_methods.h"
+#include "subcommands.h"
 #include "table.h"
 
 namespace gaussmap::benchmark {
@@ -19,7 +21,7 @@ namespace {
 constexpr double kMetres = 0.05, kDegrees = 0.2;  // a success
 constexpr Offset kNear{0.5, 1.0, false}, kBasin{5.0, 30.0, true};
 
-struct Options {
+struct RegistrationOptions {
   std::string data, json;
   int starts = 3, basin = 10;
   bool quick = false, alone = false, each = false;
@@ -37,9 +39,9 @@ struct Starts {
   std::vector<std::vector<Pose>> poses;
 };
 
-/// Processor time [ms]: other programs on the machine do not count.
+/// Processor time [ms].
 double now() {
-  return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+  return 1e3 * processorSeconds();
 }
 
 Starts startsFrom(const Dataset& data, const std::string& name, const Offset& offset, int count) {
@@ -66,7 +68,7 @@ struct Score {
 };
 
 void compare(const Dataset& data, const std::vector<Starts>& kinds, const std::vector<Method>& methods,
-             const Options& options, Table& table) {
+             const RegistrationOptions& options, Table& table) {
   std::vector<Score> own;  // of the first method, ours
   double own_prepare = 0.0;
   std::printf("| %s, %zu pair%s | start | success | median off | prepare | align | both [ms] |\n", data.name.c_str(),
@@ -118,7 +120,7 @@ void compare(const Dataset& data, const std::vector<Starts>& kinds, const std::v
   std::printf("\n");
 }
 
-void run(const Options& options) {
+void run(const RegistrationOptions& options) {
   std::vector<Dataset> all{{"simulated street", streetPairs(1, options.quick ? 1 : 4), kOutdoor}};
   if (!options.data.empty()) {
     const std::filesystem::path root = options.data;
@@ -143,21 +145,25 @@ void run(const Options& options) {
 }
 
 }  // namespace
-}  // namespace gaussmap::benchmark
 
-int main(int argc, char** argv) {
-  using namespace gaussmap::benchmark;
-  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
-  CLI::App app("Registration of scans beside PCL's");
-  Options options;
-  app.add_option("--data", options.data, "folder of the datasets");
-  app.add_option("--starts", options.starts, "near starts a pair")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--basin", options.basin, "far starts a pair")->check(CLI::NonNegativeNumber)->capture_default_str();
-  app.add_option("--json", options.json, "write the rows for machines");
-  app.add_flag("--quick", options.quick, "one pair of the street");
-  app.add_flag("--alone", options.alone, "without PCL's");
-  app.add_flag("--each", options.each, "print every try on stderr");
-  CLI11_PARSE(app, argc, argv);
-  run(options);
-  return 0;
+void addRegistration(CLI::App& app) {
+  const auto options = std::make_shared<RegistrationOptions>();
+  CLI::App& command = *app.add_subcommand("registration", "registration of scans beside PCL's");
+  command.add_option("--data", options->data, "folder of the datasets");
+  command.add_option("--starts", options->starts, "near starts a pair")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_option("--basin", options->basin, "far starts a pair")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command.add_option("--json", options->json, "write the rows for machines");
+  command.add_flag("--quick", options->quick, "one pair of the street");
+  command.add_flag("--alone", options->alone, "without PCL's");
+  command.add_flag("--each", options->each, "print every try on stderr");
+  command.callback([options] {
+    pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
+    run(*options);
+  });
 }
+
+}  // namespace gaussmap::benchmark

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap_segments_benchmark [--data DIR] [--seeds 3]: maps of line segments beside what is usually done, and the
+// gaussmap_benchmark segments [--data DIR] [--seeds 3]: maps of line segments beside what is usually done, and the
 // study of Leal, Scheding, Dissanayake 2000. DIR has the directories carmen_intel and carmen_csail with a log each;
 // without it only the simulated plan is scanned. Prints tables in Markdown. One thread.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <ctime>
 #include <functional>
-#include <iostream>
+#include <memory>
 
+#include "clock.h"
 #include "evaluation/segment_score.h"
 #include "evaluation/wall_score.h"
 #include "gaussmap/segments/segment_fitter.h"
 #include "segment_baselines.h"
 #include "segment_data.h"
+#include "subcommands.h"
 #include "table.h"
 
 namespace gaussmap::benchmark {
@@ -27,11 +28,6 @@ constexpr int kRuns = 5;                                     // of which the fas
 
 using Scans = std::vector<LaserScan>;
 using Method = std::function<SegmentMap(const Scans&)>;
-
-/// Processor time: other programs on the machine do not count.
-double now() {
-  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
 
 SegmentFitterOptions policy(EvidencePolicy policy, std::uint64_t seed = 1) {
   SegmentFitterOptions options;
@@ -123,9 +119,9 @@ void speed(const char* name, const Scans& scans, Table& table) {
   const auto rate = [&](double seconds) { return static_cast<double>(beams) / seconds / 1e6; };
   double baseline = 1e300;
   for (int run = 0; run < kRuns; ++run) {
-    const double start = now();
+    const double start = processorSeconds();
     endPointFit(scans, kMostSegments);
-    baseline = std::min(baseline, now() - start);
+    baseline = std::min(baseline, processorSeconds() - start);
   }
   std::printf(
       "| all scans, %zu beams | M beams/s | with the map | end-point fit's time / ours | memory [MB] "
@@ -135,12 +131,12 @@ void speed(const char* name, const Scans& scans, Table& table) {
     double adding = 1e300, all = 1e300;
     std::size_t memory = 0;
     for (int run = 0; run < kRuns; ++run) {
-      const double start = now();
+      const double start = processorSeconds();
       SegmentFitter fitter(policy(kind));
       for (const LaserScan& scan : scans) fitter.add(scan);
-      adding = std::min(adding, now() - start);
+      adding = std::min(adding, processorSeconds() - start);
       fitter.map();
-      all = std::min(all, now() - start);
+      all = std::min(all, processorSeconds() - start);
       memory = fitter.memoryBytes();
     }
     std::printf("| %s | %.2f | %.2f | %.2f | %.1f |\n", kind == EvidencePolicy::MomentCells ? "moments" : "particles",
@@ -271,26 +267,25 @@ void run(const std::string& data, int seeds, bool only_speed, Table& table) {
 }
 
 }  // namespace
-}  // namespace gaussmap::benchmark
 
-int main(int argc, char** argv) {
-  CLI::App app("Maps of line segments: accuracy, speed, and the paper's study");
-  std::string data;
-  std::string json;
-  int seeds = 3;
-  bool only_speed = false;
-  app.add_option("--data", data, "directory with carmen_intel and carmen_csail")->check(CLI::ExistingDirectory);
-  app.add_option("--seeds", seeds, "of the simulated noise and of particles")->check(CLI::Range(1, 1000));
-  app.add_flag("--only-speed", only_speed, "beams a second and nothing else");
-  app.add_option("--json", json, "write the speed for machines");
-  CLI11_PARSE(app, argc, argv);
-  try {
-    gaussmap::benchmark::Table table;
-    gaussmap::benchmark::run(data, seeds, only_speed, table);
-    if (!json.empty()) gaussmap::benchmark::writeJson(json, table);
-    return 0;
-  } catch (const std::exception& error) {
-    std::cerr << "gaussmap_segments_benchmark: " << error.what() << '\n';
-    return 1;
-  }
+void addSegments(CLI::App& app) {
+  struct Given {
+    std::string data, json;
+    int seeds = 3;
+    bool only_speed = false;
+  };
+  const auto given = std::make_shared<Given>();
+  CLI::App& command = *app.add_subcommand("segments", "maps of line segments: accuracy, speed, and the paper's study");
+  command.add_option("--data", given->data, "directory with carmen_intel and carmen_csail")
+      ->check(CLI::ExistingDirectory);
+  command.add_option("--seeds", given->seeds, "of the simulated noise and of particles")->check(CLI::Range(1, 1000));
+  command.add_flag("--only-speed", given->only_speed, "beams a second and nothing else");
+  command.add_option("--json", given->json, "write the speed for machines");
+  command.callback([given] {
+    Table table;
+    run(given->data, given->seeds, given->only_speed, table);
+    if (!given->json.empty()) writeJson(given->json, table);
+  });
 }
+
+}  // namespace gaussmap::benchmark

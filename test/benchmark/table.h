@@ -36,7 +36,7 @@ struct Table {
 
 /// {"rows": [...], "figures": [...]}; throws std::runtime_error if it cannot be written.
 void writeJson(const std::string& path, const Table& table);
-/// Adds what another program of the benchmark wrote in this form.
+/// Adds what another subcommand wrote in this form.
 void addJson(const std::string& path, Table& table);
 
 }  // namespace gaussmap::benchmark

@@ -8,7 +8,7 @@ set -euo pipefail
 build=$1 points=${2:-60000000} memory=${3:-200M} budget=${4:-3}
 work=$(mktemp -d -p "${TMPDIR:-/tmp}")
 trap 'rm -rf "$work"' EXIT
-"$build/test/benchmark/gaussmap_wide_scans" "$work/scans" "$points"
+"$build/test/benchmark/gaussmap_benchmark" wide-scans "$work/scans" "$points"
 options=(--frame map --resolution 0.2 --ratio 5 --scales 3 --budget "$budget" --no-curves)
 scan=$(find "$work/scans" -name '*.pcd' -printf '%s\n' | sort -n | tail -1)
 echo "$points points, $(find "$work/scans" -name '*.pcd' | wc -l) scans of up to $((scan / 1000)) kB, budget $budget"
@@ -23,4 +23,4 @@ cat "$work/said"
 echo "no limit:            $((all_memory / 1000)) MB, $all_seconds s"
 echo "--max-memory $memory:   $((tiled_memory / 1000)) MB, $tiled_seconds s ($(awk "BEGIN { printf \"%.2f\", $tiled_seconds / $all_seconds }") times)"
 cmp "$work/whole.gmap" "$work/tiled.gmap" && echo "the same bytes"
-"$build/test/benchmark/gaussmap_box_load" "$work/whole.gmap" 50
+"$build/test/benchmark/gaussmap_benchmark" box-load "$work/whole.gmap" 50

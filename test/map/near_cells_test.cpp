@@ -25,7 +25,9 @@ GaussianMap<3> mapOf(const std::vector<CellKey<3>>& keys) {
 
 std::vector<std::size_t> nearCells(const GaussianMap<3>& map, std::size_t cell, std::int32_t from, std::int32_t to) {
   std::vector<std::size_t> found;
-  forNearCells(map, cell, from, to, [&](std::size_t near) { found.push_back(near); });
+  forNearKeys(map.scale(0).keys[cell], from, to, [&](const CellKey<3>& key) {
+    if (const auto near = map.find(key, 0)) found.push_back(*near);
+  });
   std::sort(found.begin(), found.end());
   return found;
 }
@@ -48,7 +50,7 @@ TEST(ForKeysAround, LeavesOutKeysBeyond32Bits) {
   EXPECT_EQ(visited, (std::vector<CellKey<2>>{{low, high - 1}, {low + 1, high - 1}, {low, high}, {low + 1, high}}));
 }
 
-TEST(ForNearCells, FindsEveryCellOfTheRingsOnce) {
+TEST(ForNearKeys, FindsEveryCellOfTheRingsOnce) {
   Random random(1);
   std::vector<CellKey<3>> keys;
   for (int i = 0; i < 600; ++i)
@@ -68,7 +70,7 @@ TEST(ForNearCells, FindsEveryCellOfTheRingsOnce) {
       }
 }
 
-TEST(ForNearCells, EndsWhereTheKeysEnd) {
+TEST(ForNearKeys, EndsWhereTheKeysEnd) {
   constexpr std::int32_t low = std::numeric_limits<std::int32_t>::min();
   constexpr std::int32_t high = std::numeric_limits<std::int32_t>::max();
   const GaussianMap<3> map = mapOf({{low, low, low}, {low + 1, low, low}, {high, high, high}, {high, high, high - 2}});

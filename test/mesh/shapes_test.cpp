@@ -3,12 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "gaussmap/core/random.h"
-#include "mesh/mesh_distance.h"
 #include "mesh/mesh_measures.h"
-#include "simulation/scene.h"
+#include "mesh/mesh_tree.h"
 
 namespace gaussmap {
 using namespace detail;
@@ -42,12 +43,14 @@ TEST(MeshShapes, AreClosedAndLookOutwards) {
 
 TEST(MeshShapes, HaveTheirCornersOnTheTrueShape) {
   const Cylinder pipe{{1, 2, 3}, {2, -1, 2}, 0.7};
-  for (const Eigen::Vector3d& vertex : cylinderMesh(pipe, 17).vertices) EXPECT_LT(distance(vertex, pipe), 1e-12);
+  for (const Eigen::Vector3d& vertex : cylinderMesh(pipe, 17).vertices)
+    EXPECT_NEAR((vertex - pipe.base).cross(pipe.axis.normalized()).norm(), pipe.radius, 1e-12);
   for (const Eigen::Vector3d& vertex : ellipsoidMesh({1, 0, 0}, {1, 2, 3}, 17).vertices)
     EXPECT_NEAR((vertex - Eigen::Vector3d(1, 0, 0)).cwiseQuotient(Eigen::Vector3d(1, 2, 3)).norm(), 1.0, 1e-12);
   const Rectangle door{{2, 0, 0}, {0, 1, 0}, {0, 0, 2}};
   EXPECT_DOUBLE_EQ(surfaceArea(rectangleMesh(door)), 2.0);
-  for (const Eigen::Vector3d& vertex : rectangleMesh(door).vertices) EXPECT_EQ(distance(vertex, door), 0.0);
+  const std::vector<Eigen::Vector3d> corners = {{2, 0, 0}, {2, 1, 0}, {2, 1, 2}, {2, 0, 2}};
+  EXPECT_EQ(rectangleMesh(door).vertices, corners);
 }
 
 TEST(MeshShapes, RefuseTooFewFacets) {
@@ -56,36 +59,39 @@ TEST(MeshShapes, RefuseTooFewFacets) {
   EXPECT_THROW(profileMesh({{0, 0}}, 0, 0, 1), std::invalid_argument);
 }
 
-TEST(Triangulate, StaysAsNearToTheSceneAsAsked) {
-  const Scene scene = demoScene();
+TEST(FacetsWithin, StaysAsNearToTheCircleAsAsked) {
+  const double radius = 0.15;
   for (const double deviation : {1e-2, 1e-3, 1e-5}) {
-    const TriangleMesh mesh = triangulate(scene, deviation);
+    const TriangleMesh pole = cylinderMesh({{1, 2, 0}, {0, 0, 4}, radius}, facetsWithin(deviation, radius));
     double farthest = 0.0;
-    for (const Eigen::Vector3d& point : sampleSurface(mesh, 20000))
-      farthest = std::max(farthest, scene.distance(point));
+    for (const Eigen::Vector3d& point : sampleSurface(pole, 20000))
+      farthest = std::max(farthest, radius - (point - Eigen::Vector3d(1, 2, 0)).head<2>().norm());
     EXPECT_LT(farthest, deviation * (1.0 + 1e-9));
-    const MeshDistance truth(mesh);
-    for (const Eigen::Vector3d& point : sampleSurface(scene, 0.2))
-      ASSERT_LT(truth.distance(point), deviation * (1.0 + 1e-9));
+    EXPECT_GT(farthest, 0.5 * deviation);  // no more facets than needed
   }
-  EXPECT_THROW(triangulate(scene, 0.0), std::invalid_argument);
-  EXPECT_THROW(triangulate({{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}}, {}}), std::invalid_argument);
+  EXPECT_GE(facetsWithin(10.0, 0.1), 3);
+  EXPECT_EQ(facetsWithin(1e-15, 100.0), kMaxFacets);
+  EXPECT_THROW(facetsWithin(0.0, 1.0), std::invalid_argument);
 }
 
-TEST(Triangulate, IsMetByRaysWhereTheSceneIs) {  // two ways to cast a ray: exact primitives and triangles
-  const Scene scene = demoScene();
-  const MeshTree tree(triangulate(scene, 1e-6));
+TEST(CylinderMesh, IsMetByRaysWhereTheCylinderIs) {
+  const double radius = 0.5;
+  const MeshTree tree(cylinderMesh({{0, 0, -50}, {0, 0, 100}, radius}, facetsWithin(1e-6, radius)));
   Random random(1);
   int hits = 0;
   for (int i = 0; i < 5000; ++i) {
-    const Eigen::Vector3d direction(random.normal(), random.normal(), random.normal());
-    const Ray ray{{random.normal(), random.normal(), 1.0 + random.uniform()}, direction.normalized()};
-    const std::optional<double> range = scene.intersect(ray);
-    const std::optional<MeshHit> hit = tree.intersect(ray.origin, ray.direction);
-    ASSERT_EQ(hit.has_value(), range.has_value());
+    const Eigen::Vector3d origin(-3.0, 2.0 * random.uniform() - 1.0, random.normal());
+    const Eigen::Vector3d direction = Eigen::Vector3d(1.0, 0.0, 0.3 * random.normal()).normalized();
+    const std::optional<MeshHit> hit = tree.intersect(origin, direction);
+    const double aside = std::abs(origin.y());
+    if (std::abs(aside - radius) > 1e-5) {
+      ASSERT_EQ(hit.has_value(), aside < radius);
+    }
     if (!hit) continue;
     ++hits;
-    ASSERT_NEAR(hit->range, *range, 2e-4);  // 1e-6 m, but at a grazing angle on the pole
+    const double range = (3.0 - std::sqrt(std::max(0.0, radius * radius - aside * aside))) / direction.x();
+    ASSERT_NEAR(hit->range, range, 2e-2);  // 1e-6 m across, but more along a ray that grazes the side
+    ASSERT_NEAR((origin + hit->range * direction).head<2>().norm(), radius, 2e-6);
   }
   EXPECT_GT(hits, 2000);
 }

@@ -4,12 +4,15 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstddef>
+#include <optional>
+#include <vector>
 
 #include "gaussmap/map/gaussian_map.h"
+#include "gaussmap/sensor/visibility.h"
 
 namespace gaussmap::detail {
 
-/// The cells of a finished map as visitVisible() wants them.
+/// The cells of a finished map in the form that visitVisible() takes.
 struct MapCells {
   const GaussianMap<3>& map;
 
@@ -24,6 +27,22 @@ struct MapCells {
     const IndexRange children = map.childCells(cell, scale);
     for (std::size_t child = children.first; child < children.last; ++child) body(child);
   }
+};
+
+/// The finest cells of a finished map in the form that object_rules.h takes.
+struct FinestMapCells {
+  using Index = std::size_t;
+  static constexpr int kDimensions = 3;
+
+  const GaussianMap<3>& map;
+  const std::vector<Evidence>& seen;  // one per cell
+
+  std::size_t slots() const { return map.cellCount(0); }
+  double side() const { return map.grid().side(0); }
+  const CellKey<3>& key(Index cell) const { return map.scale(0).keys[cell]; }
+  std::optional<Index> find(const CellKey<3>& key) const { return map.find(key, 0); }
+  const Evidence& evidence(Index cell) const { return seen[cell]; }
+  Vector<3> mean(Index cell) const { return map.localGaussian(cell, 0).mean; }
 };
 
 }  // namespace gaussmap::detail

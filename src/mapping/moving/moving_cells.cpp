@@ -1,66 +1,44 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/mapping/moving/moving_cells.h"
+#include "mapping/moving/moving_cells.h"
 
-#include <deque>
 #include <stdexcept>
 #include <string>
-#include <utility>
 
 #include "core/check.h"
 #include "map/near_cells.h"
 #include "mapping/moving/check_options.h"
+#include "mapping/moving/map_cells.h"
+#include "mapping/moving/object_rules.h"
 
-namespace gaussmap {
-using namespace detail;
-
+namespace gaussmap::detail {
 namespace {
 
-/// Takes out the groups of cells that hold fewer points than an object has.
-void restoreSmallGroups(const GaussianMap<3>& map, const MovingCellOptions& options, std::vector<bool>& moving) {
-  const std::int32_t link = cellsFor(options.link, map.grid().side(0));
-  std::vector<bool> seen(moving.size());
+/// Keeps the connected groups of cells that hold fewer points than an object has.
+void restoreSmallGroups(const FinestMapCells& cells, const MovingCellOptions& options, std::vector<bool>& freed) {
+  const std::int32_t link = cellsFor(options.link, cells.side());
+  std::vector<bool> seen(freed.size());
   std::vector<std::size_t> group;
-  for (std::size_t seed = 0; seed < moving.size(); ++seed) {
-    if (!moving[seed] || seen[seed]) continue;
+  for (std::size_t seed = 0; seed < freed.size(); ++seed) {
+    if (!freed[seed] || seen[seed]) continue;
     group.assign(1, seed);
     seen[seed] = true;
     double points = 0.0;
     for (std::size_t i = 0; i < group.size(); ++i) {
-      points += map.localGaussian(group[i], 0).weight;
-      forNearCells(map, group[i], 1, link, [&](std::size_t near) {
-        if (!moving[near] || seen[near]) return;
+      points += cells.map.localGaussian(group[i], 0).weight;
+      forNearCells(cells, cells.key(group[i]), 1, link, [&](std::size_t near) {
+        if (!freed[near] || seen[near]) return;
         seen[near] = true;
         group.push_back(near);
       });
     }
     if (points < options.min_points)
-      for (const std::size_t cell : group) moving[cell] = false;
-  }
-}
-
-void growObjects(const GaussianMap<3>& map, const std::vector<Evidence>& evidence, const MovingCellOptions& options,
-                 std::vector<bool>& moving) {
-  const std::int32_t link = cellsFor(options.link, map.grid().side(0));
-  std::deque<std::pair<std::size_t, std::size_t>> front;  // a cell, and the freed cell that it was reached from
-  for (std::size_t cell = 0; cell < moving.size(); ++cell)
-    if (moving[cell]) front.emplace_back(cell, cell);
-  for (; !front.empty(); front.pop_front()) {
-    const std::size_t seed = front.front().second;
-    const Evidence& object = evidence[seed];
-    const Vector<3> middle = map.gaussian(seed, 0).mean;
-    forNearCells(map, front.front().first, 1, link, [&](std::size_t near) {
-      if (moving[near] || evidence[near].hits == 0 || evidence[near].first_hit < object.first_hit ||
-          evidence[near].last_hit > object.last_hit || (map.gaussian(near, 0).mean - middle).norm() > options.reach)
-        return;
-      moving[near] = true;
-      front.emplace_back(near, seed);
-    });
+      for (const std::size_t cell : group) freed[cell] = false;
   }
 }
 
 }  // namespace
 
-void detail::checkOptions(const MovingCellOptions& options, double resolution) {
+void checkOptions(const MovingCellOptions& options, double resolution) {
   require(options.occupancy.hit > 0.0, "hit", options.occupancy.hit, "must be positive");
   require(options.occupancy.miss > 0.0, "miss", options.occupancy.miss, "must be positive");
   require(options.min_points >= 0.0, "min_points", options.min_points, "must not be negative");
@@ -75,12 +53,17 @@ std::vector<bool> findMovingCells(const GaussianMap<3>& map, const std::vector<E
   if (evidence.size() != map.cellCount(0))
     throw std::invalid_argument(std::to_string(evidence.size()) + " pieces of evidence for " +
                                 std::to_string(map.cellCount(0)) + " cells");
+  const FinestMapCells cells{map, evidence};
   std::vector<bool> moving(evidence.size());
   for (std::size_t cell = 0; cell < moving.size(); ++cell)
     moving[cell] = evidence[cell].hits > 0 && logOdds(evidence[cell], options.occupancy) < 0.0;
-  restoreSmallGroups(map, options, moving);
-  growObjects(map, evidence, options, moving);
+  restoreSmallGroups(cells, options, moving);
+  std::vector<std::size_t> freed;
+  for (std::size_t cell = 0; cell < moving.size(); ++cell)
+    if (moving[cell]) freed.push_back(cell);
+  for (const std::size_t cell : cellsOfObjects(cells, std::move(freed), options.link, options.reach))
+    moving[cell] = true;
   return moving;
 }
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

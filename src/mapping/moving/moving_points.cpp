@@ -13,6 +13,8 @@
 #include "gaussmap/core/scans.h"
 #include "gaussmap/mapping/build.h"
 #include "mapping/moving/check_options.h"
+#include "mapping/moving/moving_cells.h"
+#include "mapping/moving/scan_evidence.h"
 #include "mapping/moving/shared_cells.h"
 
 namespace gaussmap {

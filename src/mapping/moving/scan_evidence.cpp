@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/mapping/moving/scan_evidence.h"
+#include "mapping/moving/scan_evidence.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -11,9 +11,7 @@
 #include "mapping/moving/map_cells.h"
 #include "sensor/culling.h"
 
-namespace gaussmap {
-using namespace detail;
-
+namespace gaussmap::detail {
 namespace {
 
 /// What one scan says, before it is summed up in the order of the scans.
@@ -61,7 +59,7 @@ std::vector<Eigen::Vector3d> finestMeans(const GaussianMap<3>& map) {
 
 }  // namespace
 
-void detail::checkOptions(const ScanEvidenceOptions& options) {
+void checkOptions(const ScanEvidenceOptions& options) {
   require(options.max_range >= 0.0, "max_range", options.max_range, "must not be negative");
   require(options.visibility.tolerance >= 0.0, "tolerance", options.visibility.tolerance, "must not be negative");
   require(options.visibility.clearance >= 0.0, "clearance", options.visibility.clearance, "must not be negative");
@@ -106,4 +104,4 @@ ScanEvidence gatherEvidence(const GaussianMap<3>& map, const Scans& scans, const
   return evidence;
 }
 
-}  // namespace gaussmap
+}  // namespace gaussmap::detail

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mapping/moving/shared_cells.h"
 
-#include <algorithm>
+#include <utility>
 
 #include "core/check.h"
 #include "core/parallel.h"
-#include "map/near_cells.h"
 #include "mapping/moving/check_options.h"
+#include "mapping/moving/map_cells.h"
+#include "mapping/moving/object_rules.h"
 
 namespace gaussmap::detail {
 void checkOptions(const SharedCellOptions& options, double resolution) {
@@ -18,50 +19,32 @@ void checkOptions(const SharedCellOptions& options, double resolution) {
 
 SharedCells findSharedCells(const GaussianMap<3>& map, const std::vector<bool>& moving,
                             const std::vector<Evidence>& evidence) {
+  const FinestMapCells cells{map, evidence};
   SharedCells shared;
-  for (std::size_t cell = 0; cell < moving.size(); ++cell) {
-    if (!moving[cell]) continue;
-    const std::uint32_t first = evidence[cell].first_hit, last = evidence[cell].last_hit;
-    const auto widen = [&](std::size_t near) {
-      SharedCell& entry = shared.try_emplace(near, SharedCell{first, last}).first->second;
-      entry.first_scan = std::min(entry.first_scan, first);
-      entry.last_scan = std::max(entry.last_scan, last);
-    };
-    widen(cell);
-    forNearCells(map, cell, 1, 1, widen);
-  }
+  for (std::size_t cell = 0; cell < moving.size(); ++cell)
+    if (moving[cell])
+      noteSharedCells(cells, cells.key(cell), SharedCell{evidence[cell].first_hit, evidence[cell].last_hit}, shared);
   return shared;
 }
 
 void fitSurfaces(const GaussianMap<3>& map, const MomentGrid<3>& still, const SharedCellOptions& options, int threads,
                  SharedCells& shared) {
-  const double side = map.grid().side(0);
-  const std::int32_t reach = cellsFor(options.reach, side);
   std::unordered_map<std::size_t, CellMoments<3>> between;  // what is left of the shared cells
   for (std::size_t i = 0; i < still.size(); ++i)
     if (const auto cell = map.find(still[i].key, 0)) between.emplace(*cell, still[i].moments);
+  const CellMoments<3> none;
+  const auto still_in = [&](std::size_t cell) -> const CellMoments<3>& {
+    if (shared.count(cell) == 0) return map.scale(0).moments[cell];
+    const auto found = between.find(cell);
+    return found == between.end() ? none : found->second;
+  };
 
+  const std::vector<Evidence> unused;
+  const FinestMapCells cells{map, unused};
   std::vector<std::pair<const std::size_t, SharedCell>*> entries;
   for (auto& entry : shared) entries.push_back(&entry);
   parallelFor(entries.size(), threads, 64, [&](std::size_t i) {
-    const std::size_t cell = entries[i]->first;
-    const CellKey<3> key = map.scale(0).keys[cell];
-    SurfaceSums<3> sums;
-    const auto add = [&](std::size_t near) {
-      const CellMoments<3>* moments = &map.scale(0).moments[near];
-      if (shared.count(near) > 0) {
-        const auto found = between.find(near);
-        if (found == between.end()) return;
-        moments = &found->second;
-      }
-      const CellKey<3> other = map.scale(0).keys[near];
-      sums.add(*moments, side, side * Eigen::Vector3d(other[0] - key[0], other[1] - key[1], other[2] - key[2]));
-    };
-    add(cell);
-    for (std::int32_t ring = 1; ring <= reach && !entries[i]->second.surface; ++ring) {
-      forNearCells(map, cell, ring, ring, add);
-      entries[i]->second.surface = sums.surface(options.flatness);
-    }
+    entries[i]->second.surface = surfaceAt(cells, entries[i]->first, still_in, options);
   });
 }
 

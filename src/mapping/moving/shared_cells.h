@@ -9,13 +9,14 @@
 
 #include "gaussmap/map/gaussian_map.h"
 #include "gaussmap/map/moment_grid.h"
+#include "gaussmap/mapping/moving/moving_points.h"
 #include "mapping/moving/surface.h"
 
 namespace gaussmap::detail {
 
-/// The finest cells that an object was in or beside, while scans first ... last saw it, and the surface there.
+/// A finest cell that an object was in or beside.
 struct SharedCell {
-  std::uint32_t first_scan, last_scan;
+  std::uint32_t first_scan, last_scan;  // that may have seen the object in it
   std::optional<Surface<3>> surface = std::nullopt;
 };
 using SharedCells = std::unordered_map<std::size_t, SharedCell>;
@@ -24,8 +25,8 @@ using SharedCells = std::unordered_map<std::size_t, SharedCell>;
 SharedCells findSharedCells(const GaussianMap<3>& map, const std::vector<bool>& moving,
                             const std::vector<Evidence>& evidence);
 
-/// Fits the surfaces: from the points in cells that neither hold nor touch an object, and from `still`, the points of
-/// the cells beside one that were measured while it was elsewhere; the nearest cells that make a flat piece.
+/// Fits the surfaces (surfaceAt()) to the points in cells that neither hold nor touch an object, and to `still`: the
+/// points of shared cells that were measured while the object was elsewhere.
 void fitSurfaces(const GaussianMap<3>& map, const MomentGrid<3>& still, const SharedCellOptions& options, int threads,
                  SharedCells& shared);
 

@@ -8,7 +8,7 @@
 
 #include "gaussmap/core/cell_moments.h"
 #include "gaussmap/core/gaussian.h"
-#include "gaussmap/mapping/moving/moving_cells.h"
+#include "gaussmap/mapping/moving/moving_points.h"
 
 namespace gaussmap::detail {
 
@@ -37,7 +37,7 @@ class SurfaceSums {
     product_ += count * (moments.covariance(side) + mean * mean.transpose());
   }
 
-  /// The surface that the points lie on, if it is flat: a standard deviation across of `flatness` at most [m].
+  /// The surface that the points lie on, if it is flat: its standard deviation across is at most `flatness` [m].
   std::optional<Surface<D>> surface(double flatness) const {
     constexpr double kFewest = 10.0;  // points that make a surface
     constexpr double kExtent = 0.05;  // it has a standard deviation of at least this on its second axis [m]

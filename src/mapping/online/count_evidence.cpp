@@ -11,16 +11,16 @@
 namespace gaussmap::detail {
 namespace {
 
-/// A cluster that a range image is asked about, and the answer.
-struct Question {
+/// A test whether the beams of a range image passed through a cluster.
+struct BeamTest {
   std::uint32_t cell;
   std::uint32_t cluster;
   int scale;
-  Eigen::Vector3d mean;  // [m, map frame]: noted while the cell is at hand
-  float passed = 0.0f;   // share of its samples that beams went through
+  Eigen::Vector3d mean;  // [m, map frame]: copied while the cell is in the cache
+  float passed = 0.0f;   // result: the share of its samples that beams passed through
 };
 
-/// The cells as visitVisible() wants them. Notes the coarse ones that it looks into.
+/// The cells in the form that visitVisible() takes. Notes the coarse ones whose children are visited.
 template <int D>
 struct VisibleCells {
   const OnlineCells<D>& cells;
@@ -61,7 +61,7 @@ struct VisibleCells {
   }
 };
 
-/// B of [1]: how many pixels the ball round a cell may cover, but not more than anybody needs.
+/// B of [1]: how many pixels the ball around a cell may cover, at most kMost.
 int samplesFor(const Projection& projection, double range, double side) {
   constexpr double kMost = 100.0;
   double pixel = 0.0;  // its area on the unit sphere, or on the plane at z = 1
@@ -77,7 +77,7 @@ int samplesFor(const Projection& projection, double range, double side) {
 }
 
 template <int D>
-Question ask(const OnlineCells<D>& cells, std::uint32_t i, std::uint32_t cluster, int scale, const Pose& sensor) {
+BeamTest beamTest(const OnlineCells<D>& cells, std::uint32_t i, std::uint32_t cluster, int scale, const Pose& sensor) {
   const OnlineCell<D>& cell = cells.cell(i, scale);
   return {i, cluster, scale,
           inSpace(Vector<D>(cells.grid().centre(cell.key, scale) + cell.clusters[cluster].gaussian.mean), sensor)};
@@ -87,16 +87,16 @@ bool passes(const Eigen::Vector3d& point, const SensorView& view, const OnlineOp
   return visibilityOf(view.image, view.toSensor(point), options.visibility) == Visibility::PassedThrough;
 }
 
-/// The share of a cluster's samples in its cell that the beams of a view went through.
+/// The share of a cluster's samples in its cell that the beams of a view passed through.
 template <int D>
-double shareOfSamples(const OnlineCells<D>& cells, const Question& question, const SensorView& view,
+double shareOfSamples(const OnlineCells<D>& cells, const BeamTest& test, const SensorView& view,
                       const OnlineOptions& options) {
-  const OnlineCell<D>& cell = cells.cell(question.cell, question.scale);
-  const Gaussian<D>& gaussian = cell.clusters[question.cluster].gaussian;
-  const Vector<D> centre = cells.grid().centre(cell.key, question.scale);
-  const double side = cells.grid().side(question.scale);
-  const int wanted = samplesFor(view.image.projection(), view.toSensor(question.mean).norm(), side);
-  Random random = Random::forPart(0, (std::uint64_t{KeyIndex::hashOf(cell.key)} << 16) + question.cluster);
+  const OnlineCell<D>& cell = cells.cell(test.cell, test.scale);
+  const Gaussian<D>& gaussian = cell.clusters[test.cluster].gaussian;
+  const Vector<D> centre = cells.grid().centre(cell.key, test.scale);
+  const double side = cells.grid().side(test.scale);
+  const int wanted = samplesFor(view.image.projection(), view.toSensor(test.mean).norm(), side);
+  Random random = Random::forPart(0, (std::uint64_t{KeyIndex::hashOf(cell.key)} << 16) + test.cluster);
   const GaussianSampler<D> sampler(gaussian);
   int inside = 0, passed = 0;
   for (int i = 0; i < wanted; ++i) {
@@ -105,28 +105,27 @@ double shareOfSamples(const OnlineCells<D>& cells, const Question& question, con
     ++inside;
     passed += passes(inSpace(Vector<D>(centre + point), view.pose), view, options);
   }
-  return inside > 0 ? double(passed) / inside : double(passes(question.mean, view, options));
+  return inside > 0 ? double(passed) / inside : double(passes(test.mean, view, options));
 }
 
 template <int D>
-void answer(const OnlineCells<D>& cells, std::vector<Question>& questions, const SensorView& view,
-            const OnlineOptions& options) {
+void runTests(const OnlineCells<D>& cells, std::vector<BeamTest>& tests, const SensorView& view,
+              const OnlineOptions& options) {
   const bool mean_only = options.samples == OccupancySamples::Mean;
-  parallelFor(questions.size(), options.threads, 1024, [&](std::size_t i) {
-    Question& question = questions[i];
-    question.passed = static_cast<float>(mean_only ? double(passes(question.mean, view, options))
-                                                   : shareOfSamples(cells, question, view, options));
+  parallelFor(tests.size(), options.threads, 1024, [&](std::size_t i) {
+    BeamTest& test = tests[i];
+    test.passed = static_cast<float>(mean_only ? double(passes(test.mean, view, options))
+                                               : shareOfSamples(cells, test, view, options));
   });
 }
 
 template <int D>
-void count(OnlineCells<D>& cells, const std::vector<Question>& questions, const OnlineOptions& options,
-           OnlineScan<D>& scan) {
-  for (const Question& question : questions) {
-    if (!(question.passed > 0.0f)) continue;
-    miss(cells.cell(question.cell, question.scale).clusters[question.cluster], double(question.passed),
-         options.occupancy);
-    if (question.scale == 0) scan.missed.push_back(question.cell);
+void countPassed(OnlineCells<D>& cells, const std::vector<BeamTest>& tests, const OnlineOptions& options,
+                 OnlineScan<D>& scan) {
+  for (const BeamTest& test : tests) {
+    if (!(test.passed > 0.0f)) continue;
+    miss(cells.cell(test.cell, test.scale).clusters[test.cluster], double(test.passed), options.occupancy);
+    if (test.scale == 0) scan.missed.push_back(test.cell);
   }
 }
 
@@ -151,10 +150,10 @@ template <int D>
 void lookBack(OnlineCells<D>& cells, OnlineScan<D>& scan, const std::deque<SensorView>& views,
               const OnlineOptions& options) {
   for (const SensorView& view : views) {
-    std::vector<Question> questions;
-    for (const std::uint32_t cell : scan.new_cells) questions.push_back(ask(cells, cell, 0, 0, view.pose));
-    answer(cells, questions, view, options);
-    count(cells, questions, options, scan);
+    std::vector<BeamTest> tests;
+    for (const std::uint32_t cell : scan.new_cells) tests.push_back(beamTest(cells, cell, 0, 0, view.pose));
+    runTests(cells, tests, view, options);
+    countPassed(cells, tests, options, scan);
   }
 }
 
@@ -167,10 +166,10 @@ void countMisses(OnlineCells<D>& cells, OnlineScan<D>& scan, const SensorView& v
   const auto unhit = [&](const OnlineCluster<D>& cluster) {
     return cluster.evidence.hits == 0 || cluster.evidence.last_hit != scan.number;
   };
-  std::vector<Question> questions;
+  std::vector<BeamTest> tests;
   const VisitCounts counts = visitVisible(visible, culling, view.pose, [&](std::size_t cell) {
     const std::uint32_t i = visible.indexOf(cell, 0);
-    if (unhit(cells.cell(i, 0).clusters[0])) questions.push_back(ask(cells, i, 0, 0, view.pose));
+    if (unhit(cells.cell(i, 0).clusters[0])) tests.push_back(beamTest(cells, i, 0, 0, view.pose));
   });
   statistics.cells_tested = counts.tested;
   statistics.cells_visited = counts.visited;
@@ -180,10 +179,10 @@ void countMisses(OnlineCells<D>& cells, OnlineScan<D>& scan, const SensorView& v
       if (std::none_of(clusters.begin(), clusters.end(), unhit)) continue;
       if (options.learning_rate == LearningRate::SampleMean) cells.refresh(i, scale);
       for (std::uint32_t c = 0; c < clusters.size(); ++c)
-        if (unhit(clusters[c])) questions.push_back(ask(cells, i, c, scale, view.pose));
+        if (unhit(clusters[c])) tests.push_back(beamTest(cells, i, c, scale, view.pose));
     }
-  answer(cells, questions, view, options);
-  count(cells, questions, options, scan);
+  runTests(cells, tests, view, options);
+  countPassed(cells, tests, options, scan);
 }
 
 #define GAUSSMAP_INSTANTIATE(D)                                                                                    \

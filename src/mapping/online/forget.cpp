@@ -3,55 +3,25 @@
 #include <utility>
 
 #include "gaussmap/clustering/kl_kmeans.h"
-#include "map/near_cells.h"
+#include "mapping/moving/object_rules.h"
 #include "mapping/online/online_state.h"
 
 namespace gaussmap::detail {
 namespace {
 
-/// The finest cells below 0, and those of the same objects: beside one, and seen only while it was.
+/// The finest cells below 0, and the other cells of the same objects.
 template <int D>
 std::vector<std::uint32_t> cellsToForget(const OnlineCells<D>& cells, const OnlineScan<D>& scan,
                                          const OnlineOptions& options) {
-  std::vector<std::uint32_t> found;
+  std::vector<std::uint32_t> freed;
   for (const std::uint32_t i : scan.missed)
-    if (cells.cell(i, 0).clusters[0].log_odds < 0.0f) found.push_back(i);
-  std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
-  if (found.empty()) return found;
-
-  const Grid<D>& grid = cells.grid();
-  const std::int32_t link = cellsFor(options.link, grid.side(0));
-  std::vector<bool> taken(cells.slots(0));
-  std::vector<std::uint32_t> seeds = found;
-  for (const std::uint32_t i : found) taken[i] = true;
-  for (std::size_t next = 0; next < found.size(); ++next) {
-    const std::uint32_t seed = seeds[next];
-    const OnlineCell<D>& from = cells.cell(seed, 0);
-    const Evidence& object = from.clusters[0].evidence;
-    forNearKeys(cells.cell(found[next], 0).key, 1, link, [&](const CellKey<D>& key) {
-      const std::uint32_t near = cells.find(key, 0);
-      if (near == OnlineCells<D>::kNone) return;
-      const OnlineCell<D>& cell = cells.cell(near, 0);
-      const Evidence& evidence = cell.clusters[0].evidence;
-      if (taken[near] || evidence.hits == 0 || evidence.first_hit < object.first_hit ||
-          evidence.last_hit > object.last_hit)
-        return;
-      Vector<D> apart = cell.clusters[0].gaussian.mean - from.clusters[0].gaussian.mean;
-      for (int axis = 0; axis < D; ++axis) {
-        const auto a = static_cast<std::size_t>(axis);
-        apart[axis] += (double(cell.key[a]) - double(from.key[a])) * grid.side(0);
-      }
-      if (apart.norm() > options.reach) return;
-      taken[near] = true;
-      found.push_back(near);
-      seeds.push_back(seed);
-    });
-  }
-  return found;
+    if (cells.cell(i, 0).clusters[0].log_odds < 0.0f) freed.push_back(i);
+  std::sort(freed.begin(), freed.end());
+  freed.erase(std::unique(freed.begin(), freed.end()), freed.end());
+  return cellsOfObjects(FinestOnlineCells<D>{cells}, std::move(freed), options.link, options.reach);
 }
 
-/// Clusters that learn by themselves are adjusted to the finer ones that are left.
+/// Adjusts clusters that learn on their own to the finer ones that are left.
 template <int D>
 void readjust(OnlineCells<D>& cells, std::uint32_t i, int scale) {
   std::vector<Gaussian<D>> references;

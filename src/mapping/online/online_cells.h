@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/key_index.h"
@@ -14,17 +16,17 @@
 
 namespace gaussmap::detail {
 
-/// A Gaussian of the map on line.
+/// A Gaussian of the map while it is built on line.
 template <int D>
 struct OnlineCluster {
   Gaussian<D> gaussian;  // mean about the centre of its cell
-  double area = 1.0;     // finest cells that it stands for
+  double area = 1.0;     // finest cells that it represents
   float log_odds = 0.0f;
   std::uint32_t parent = 0;  // its cluster, among those of the parent cell
   Evidence evidence;
 };
 
-/// The clusters of a cell; one of them in place: most cells hold one.
+/// The clusters of a cell. Most cells hold one, which needs no memory of its own.
 template <int D>
 using OnlineClusters = boost::container::small_vector<OnlineCluster<D>, 1>;
 
@@ -38,7 +40,7 @@ struct OnlineCell {
   OnlineClusters<D> clusters;
   bool alive = false;
   bool stale = false;  // coarse: a child has changed since the clusters were summed
-  double need = 0.0;   // coarse: what one more cluster would gain, when it was last looked at
+  double need = 0.0;   // coarse: what one more cluster would gain, as of the last refinement that touched it
   double spare = 0.0;  // coarse: what its last cluster gained
 };
 
@@ -66,10 +68,10 @@ class OnlineCells {
 
   /// kNone if there is no such cell.
   std::uint32_t find(const CellKey<D>& key, int scale) const;
-  /// The finest cell of a key, made with its ancestors if need be; a new one has no cluster yet.
+  /// The finest cell of a key, created with its ancestors if it does not exist; a new one has no cluster yet.
   std::uint32_t findOrInsert(const CellKey<D>& key);
-  /// Erases a finest cell. Coarse clusters and cells that stood for nothing else go too; `gone(cell, cluster, scale)`
-  /// is told of each cluster before.
+  /// Erases a finest cell, and the coarse clusters and cells that represented nothing else. Calls
+  /// `gone(cell, cluster, scale)` before each cluster is erased.
   template <typename Gone>
   void erase(std::uint32_t finest, const Gone& gone);
   /// Replaces the clusters of a coarse cell.
@@ -84,9 +86,10 @@ class OnlineCells {
     for (const std::uint32_t child : cell(i, scale).children)
       for (OnlineCluster<D>& cluster : cell(child, scale - 1).clusters) body(cluster);
   }
-  /// Sums stale coarse clusters of the cell anew from the finer ones linked to them, [9], [10].
+  /// Recomputes stale coarse clusters of the cell from the finer ones linked to them, [9], [10].
   void refresh(std::uint32_t i, int scale);
-  /// Marks a coarse cell and its ancestors: what is under it has changed. A stale cell has stale ancestors only.
+  /// Marks a coarse cell and its ancestors as stale: a cell under it has changed. All ancestors of a stale cell are
+  /// stale.
   void markStale(std::uint32_t i, int scale);
 
   std::size_t memoryBytes() const;
@@ -116,7 +119,7 @@ void OnlineCells<D>::erase(std::uint32_t finest, const Gone& gone) {
     OnlineCell<D>& dead = cell(i, scale);
     if (scale == 0) gone(i, std::size_t{0}, 0);
     if (scale > 0 && !dead.children.empty()) {
-      // The clusters that no finer one is linked to stand for nothing any more.
+      // A cluster that no finer one is linked to represents nothing any more.
       std::vector<std::uint32_t> members(dead.clusters.size(), 0);
       forClustersUnder(i, scale, [&](OnlineCluster<D>& finer) { ++members[finer.parent]; });
       OnlineClusters<D> left;
@@ -131,8 +134,8 @@ void OnlineCells<D>::erase(std::uint32_t finest, const Gone& gone) {
       if (left.size() == dead.clusters.size()) return;
       forClustersUnder(i, scale, [&](OnlineCluster<D>& finer) { finer.parent = place[finer.parent]; });
       setClusters(i, scale, std::move(left));
-      dead.need = dead.spare = 0.0;  // unknown until the cell is looked at again
-      i = dead.parent;               // a coarser cluster may have stood for the one that is gone
+      dead.need = dead.spare = 0.0;  // unknown until the next refinement that touches the cell
+      i = dead.parent;               // a coarser cluster may have represented the one that is gone
       continue;
     }
     if (scale > 0)
@@ -142,5 +145,24 @@ void OnlineCells<D>::erase(std::uint32_t finest, const Gone& gone) {
     i = parent;
   }
 }
+
+/// The finest cells in the form that object_rules.h takes.
+template <int D>
+struct FinestOnlineCells {
+  using Index = std::uint32_t;
+  static constexpr int kDimensions = D;
+
+  const OnlineCells<D>& cells;
+
+  std::size_t slots() const { return cells.slots(0); }
+  double side() const { return cells.grid().side(0); }
+  const CellKey<D>& key(Index i) const { return cells.cell(i, 0).key; }
+  std::optional<Index> find(const CellKey<D>& key) const {
+    const Index found = cells.find(key, 0);
+    return found == OnlineCells<D>::kNone ? std::nullopt : std::optional(found);
+  }
+  const Evidence& evidence(Index i) const { return cells.cell(i, 0).clusters[0].evidence; }
+  const Vector<D>& mean(Index i) const { return cells.cell(i, 0).clusters[0].gaussian.mean; }
+};
 
 }  // namespace gaussmap::detail

@@ -68,6 +68,28 @@ std::vector<Vector<D>> returnsInMap(const Scan& scan) {
 
 }  // namespace
 
+OnlineOptions OnlineOptions::yguel2009(int dimensions) {
+  if (dimensions != 2 && dimensions != 3)
+    throw std::invalid_argument("dimensions = " + std::to_string(dimensions) + ": must be 2 or 3");
+  OnlineOptions options;
+  options.map.resolution = dimensions == 2 ? 0.05 : 0.1;
+  options.map.ratio = 10;
+  options.map.scales = 3;
+  options.learning_rate = LearningRate::Occupancy;
+  options.slowest_rate = 5e-4;
+  options.fastest_rate = 5e-2;
+  options.occupancy.most = 10.0;
+  options.samples = OccupancySamples::Random;
+  options.occupancy_every = dimensions == 2 ? 1 : 3;
+  options.look_back = 0;  // new cells are not tested against earlier scans
+  options.reach = 0.0;    // objects do not grow beyond the deleted cells
+  options.refine_every = 10;
+  options.refine_cells = 4;
+  options.method = RefineMethod::Insert;
+  options.seed_rule = ClusterSeed::Datum;
+  return options;
+}
+
 template <int D>
 struct OnlineMapper<D>::State {
   State(const OnlineOptions& given, Removed told)

@@ -17,7 +17,7 @@
 // The steps of OnlineMapper::add(), one file each.
 namespace gaussmap::detail {
 
-/// A scan on its way into the map.
+/// The scan that is being added to the map.
 template <int D>
 struct OnlineScan {
   std::uint32_t number = 0;
@@ -25,11 +25,11 @@ struct OnlineScan {
   std::vector<Vector<D>> points;         // returns [m, map frame]
   std::vector<std::uint32_t> touched;    // finest cells with points, in the order they were touched
   std::vector<std::uint32_t> new_cells;  // of them, those not there before
-  std::vector<std::uint32_t> missed;     // finest cells that a range image sees through; may be there twice
+  std::vector<std::uint32_t> missed;     // finest cells that beams passed through; may contain a cell twice
   std::optional<MomentGrid<D>> sums;     // of its points; LearningRate::SampleMean only
 };
 
-/// What is remembered of a scan that has become a part of the map.
+/// The sums of a recent scan, kept to take its points out of the map again.
 template <int D>
 struct ScanSums {
   std::uint32_t number;
@@ -73,22 +73,23 @@ void updateByPoints(OnlineCells<D>& cells, OnlineScan<D>& scan, const OnlineOpti
 template <int D>
 void restoreCell(OnlineCells<D>& cells, const RemovedCluster<D>& removed, const OnlineOptions& options);
 
-/// Asks the range images of the scans before about the cells that are new.
+/// Tests the new cells against the range images of the scans before.
 template <int D>
 void lookBack(OnlineCells<D>& cells, OnlineScan<D>& scan, const std::deque<SensorView>& views,
               const OnlineOptions& options);
 
-/// Every cluster with one of these finest cells under it is hit.
+/// Counts a hit for every cluster with one of these finest cells under it.
 template <int D>
 void countHits(OnlineCells<D>& cells, const OnlineScan<D>& scan, const std::vector<std::uint32_t>& touched,
                const OnlineOptions& options);
 
-/// Misses of all clusters that the scan sees and did not hit, Yguel 2009, sec. 4.1 and 4.2.
+/// Counts a miss for every cluster that the scan did not hit and passes through, Yguel 2009, sec. 4.1 and 4.2.
 template <int D>
 void countMisses(OnlineCells<D>& cells, OnlineScan<D>& scan, const SensorView& view, const OnlineOptions& options,
                  OnlineStatistics& statistics);
 
-/// Deletes what is below 0, and what belongs to it; Yguel 2009, sec. 5.3. Returns the finest cells deleted.
+/// Deletes clusters with log-odds below 0 and the rest of their objects, Yguel 2009, sec. 5.3. Returns the finest cells
+/// deleted.
 template <int D>
 std::vector<GoneCell<D>> forget(OnlineCells<D>& cells, const OnlineScan<D>& scan, const OnlineOptions& options,
                                 const typename OnlineMapper<D>::Removed& removed, OnlineStatistics& statistics);

@@ -134,8 +134,10 @@ std::uint32_t takeOne(OnlineCells<D>& cells, int scale, std::priority_queue<Entr
 }
 
 template <int D>
-void insertOne(OnlineCells<D>& cells, std::uint32_t i, int scale) {
-  const KLClustering<D> found = insertCluster(cells.dataUnder(i, scale), referencesOf(cells.cell(i, scale)));
+void insertOne(OnlineCells<D>& cells, std::uint32_t i, int scale, ClusterSeed seed_rule) {
+  KLKMeansOptions options;
+  options.seed_rule = seed_rule;
+  const KLClustering<D> found = insertCluster(cells.dataUnder(i, scale), referencesOf(cells.cell(i, scale)), options);
   recluster(cells, i, scale, found.references, found.labels);
   cells.cell(i, scale).need = 0.0;  // until it is looked at again
 }
@@ -203,7 +205,7 @@ void refineVisible(OnlineCells<D>& cells, const OnlineScan<D>& scan, const Onlin
       }
       needy.pop();
       if (options.method == RefineMethod::Insert) {
-        insertOne(cells, next, scale);
+        insertOne(cells, next, scale, options.seed_rule);
         continue;
       }
       cutInto(cells.cell(next, scale).clusters.size() + 1, cells, next, scale);

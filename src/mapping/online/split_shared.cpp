@@ -6,33 +6,26 @@
 #include <utility>
 #include <vector>
 
-#include "map/near_cells.h"
-#include "mapping/moving/surface.h"
+#include "mapping/moving/object_rules.h"
 #include "mapping/online/online_state.h"
 
 namespace gaussmap::detail {
 namespace {
 
-/// A cell beside an object that has gone, and the scans that may have seen the object in it.
-struct Shared {
-  std::uint32_t first, last;
-  float log_odds;  // of the object
+/// A cell beside an object that has gone.
+struct CellBesideObject {
+  std::uint32_t first_scan, last_scan;  // that may have seen the object in the cell
+  float log_odds;                       // of the object
 };
-using SharedCells = std::map<std::uint32_t, Shared>;  // in order: the result depends on nothing else
+using CellsBesideObjects =
+    std::map<std::uint32_t, CellBesideObject>;  // in the order of cells: the result depends on it
 
 template <int D>
-SharedCells cellsBeside(const OnlineCells<D>& cells, const std::vector<GoneCell<D>>& gone) {
-  SharedCells shared;
+CellsBesideObjects cellsBeside(const OnlineCells<D>& cells, const std::vector<GoneCell<D>>& gone) {
+  CellsBesideObjects shared;
   for (const GoneCell<D>& cell : gone)
-    forNearKeys(cell.key, 1, 1, [&](const CellKey<D>& key) {
-      const std::uint32_t near = cells.find(key, 0);
-      if (near == OnlineCells<D>::kNone) return;
-      const Evidence& evidence = cell.evidence;
-      Shared& entry =
-          shared.try_emplace(near, Shared{evidence.first_hit, evidence.last_hit, cell.log_odds}).first->second;
-      entry.first = std::min(entry.first, evidence.first_hit);
-      entry.last = std::max(entry.last, evidence.last_hit);
-    });
+    noteSharedCells(FinestOnlineCells<D>{cells}, cell.key,
+                    CellBesideObject{cell.evidence.first_hit, cell.evidence.last_hit, cell.log_odds}, shared);
   return shared;
 }
 
@@ -40,16 +33,16 @@ template <int D>
 class Splitter {
  public:
   Splitter(OnlineCells<D>& cells, const std::deque<ScanSums<D>>& recent, const OnlineOptions& options,
-           SharedCells shared)
+           CellsBesideObjects shared)
       : cells_(cells), recent_(recent), options_(options), side_(cells.grid().side(0)), shared_(std::move(shared)) {}
 
-  const SharedCells& shared() const { return shared_; }
+  const CellsBesideObjects& shared() const { return shared_; }
 
   /// Calls body(scan, sums) for the scans that saw the object and points in this cell.
   template <typename Body>
-  void forScans(std::uint32_t cell, const Shared& of, const Body& body) const {
+  void forScans(std::uint32_t cell, const CellBesideObject& of, const Body& body) const {
     for (const ScanSums<D>& scan : recent_) {
-      if (scan.number < of.first || scan.number > of.last) continue;
+      if (scan.number < of.first_scan || scan.number > of.last_scan) continue;
       const CellMoments<D>* sums = scan.sums.find(cells_.cell(cell, 0).key);
       if (sums != nullptr && sums->count > 0) body(scan, *sums);
     }
@@ -64,36 +57,14 @@ class Splitter {
     return moments;
   }
 
-  /// The surface in a cell as it is known from such points, there and around; about the cell's centre.
-  std::optional<Surface<D>> surfaceAt(std::uint32_t cell) const {
-    const CellKey<D> key = cells_.cell(cell, 0).key;
-    SurfaceSums<D> sums;
-    sums.add(still(cell), side_, Vector<D>::Zero());
-    std::optional<Surface<D>> surface;
-    const std::int32_t reach = cellsFor(options_.shared.reach, side_);
-    for (std::int32_t ring = 1; ring <= reach && !surface; ++ring) {
-      forNearKeys(key, ring, ring, [&](const CellKey<D>& other) {
-        const std::uint32_t near = cells_.find(other, 0);
-        if (near == OnlineCells<D>::kNone) return;
-        Vector<D> offset;
-        for (int axis = 0; axis < D; ++axis) {
-          const auto a = static_cast<std::size_t>(axis);
-          offset[axis] = side_ * (double(other[a]) - double(key[a]));
-        }
-        sums.add(still(near), side_, offset);
-      });
-      surface = sums.surface(options_.shared.flatness);
-    }
-    return surface;
-  }
-
   /// The scans whose points in the cell lie off its surface.
-  std::vector<std::uint32_t> scansOff(std::uint32_t cell, const Shared& of) const {
+  std::vector<std::uint32_t> scansOff(std::uint32_t cell, const CellBesideObject& of) const {
     std::vector<std::uint32_t> off;
     bool seen = false;
     forScans(cell, of, [&](const ScanSums<D>&, const CellMoments<D>&) { seen = true; });
     if (!seen || still(cell).count == 0) return off;
-    const std::optional<Surface<D>> surface = surfaceAt(cell);
+    const std::optional<Surface<D>> surface = surfaceAt(
+        FinestOnlineCells<D>{cells_}, cell, [&](std::uint32_t near) { return still(near); }, options_.shared);
     if (!surface) return off;
     forScans(cell, of, [&](const ScanSums<D>& scan, const CellMoments<D>& sums) {
       const double away = surface->normal.dot(sums.mean(side_) - surface->point);
@@ -108,7 +79,7 @@ class Splitter {
   const std::deque<ScanSums<D>>& recent_;
   const OnlineOptions& options_;
   const double side_;
-  const SharedCells shared_;
+  const CellsBesideObjects shared_;
 };
 
 /// Takes the sums of a cell out of what is remembered of a scan.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/mapping/moving/moving_cells.h"
+#include "mapping/moving/moving_cells.h"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +10,8 @@
 #include "gaussmap/mapping/build.h"
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 /// Cells on a line along x, `points` in the middle of each, and what scans said about them.

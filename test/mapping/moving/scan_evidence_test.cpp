@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/mapping/moving/scan_evidence.h"
+#include "mapping/moving/scan_evidence.h"
 
 #include <gtest/gtest.h>
 

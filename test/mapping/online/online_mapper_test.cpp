@@ -223,6 +223,26 @@ TEST(OnlineMapper, MapsInThePlaneToo) {
   EXPECT_EQ(map.scale(0).moments, batch.scale(0).moments);
 }
 
+TEST(OnlineMapper, RunsTheSystemOfThePaper) {
+  OnlineOptions options = OnlineOptions::yguel2009(3);
+  EXPECT_EQ(options.map.resolution, 0.1);
+  EXPECT_EQ(options.occupancy_every, 3);
+  EXPECT_EQ(OnlineOptions::yguel2009(2).map.resolution, 0.05);
+  EXPECT_EQ(OnlineOptions::yguel2009(2).occupancy_every, 1);
+  EXPECT_THROW(OnlineOptions::yguel2009(4), std::invalid_argument);
+  options.map.resolution = 0.2;  // faster
+  OnlineMapper<3> mapper(options);
+  std::size_t added = 0;
+  for (const Scan& scan : hallScans(10)) {
+    added = mapper.add(scan).added;
+    EXPECT_EQ(added > 0, mapper.scans() == 10);
+  }
+  EXPECT_LE(added, 8u);  // four clusters for each of the two coarse scales
+  const GaussianMap<3> map = mapper.map();
+  EXPECT_FALSE(map.canGrow());
+  EXPECT_EQ(map.gaussianCount(1) + map.gaussianCount(2), map.cellCount(1) + map.cellCount(2) + added);
+}
+
 TEST(OnlineMapper, RefusesOptionsThatMeanNothing) {
   const auto with = [](auto change) {
     OnlineOptions options;

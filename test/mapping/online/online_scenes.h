@@ -6,6 +6,7 @@
 #include "gaussmap/mapping/build.h"
 #include "gaussmap/mapping/online/online_mapper.h"
 #include "io/gmap/map_equality.h"
+#include "mesh/shapes.h"
 #include "simulation/lidar.h"
 #include "simulation/simulation.h"
 
@@ -13,6 +14,12 @@ namespace gaussmap::test {
 
 inline Scan asScan(const SimulatedScan& simulated) {
   return {simulated.points, simulated.pose, 0};
+}
+
+inline World worldOf(const std::vector<detail::Rectangle>& rectangles) {
+  TriangleMesh mesh;
+  for (const detail::Rectangle& rectangle : rectangles) append(mesh, detail::rectangleMesh(rectangle));
+  return World(mesh);
 }
 
 /// Looks from the origin at a wall at x = 10.1 with boxes in front of it at x = 5.1, their right edges at these y. No
@@ -27,10 +34,9 @@ inline LidarOptions wallLidar() {
   return lidar;
 }
 inline Scan boxScan(const std::vector<double>& boxes, const LidarOptions& lidar = wallLidar()) {
-  Scene scene;
-  scene.rectangles.push_back({{10.1, -6.0, -2.0}, {0.0, 12.0, 0.0}, {0.0, 0.0, 4.0}});
-  for (const double y : boxes) scene.rectangles.push_back({{5.1, y, -0.5}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}});
-  return asScan(simulateScan(scene, Pose(), lidar));
+  std::vector<detail::Rectangle> rectangles = {{{10.1, -6.0, -2.0}, {0.0, 12.0, 0.0}, {0.0, 0.0, 4.0}}};
+  for (const double y : boxes) rectangles.push_back({{5.1, y, -0.5}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}});
+  return asScan(simulateScan(worldOf(rectangles), Pose(), lidar));
 }
 inline Scan wallScan(bool with_box) {
   return boxScan(with_box ? std::vector<double>{-0.5} : std::vector<double>{});

@@ -17,14 +17,13 @@ constexpr int kRound = 100;  // scans until the robot is where it was
 
 /// Walls and floor of 12 m x 8 m; the box changes its place ten times a round.
 Scan roomScan(int i) {
-  Scene room;
-  room.rectangles = {{{-6, -4, 0}, {12, 0, 0}, {0, 8, 0}},
-                     {{-6, -4, 0}, {12, 0, 0}, {0, 0, 3}},
-                     {{-6, 4, 0}, {12, 0, 0}, {0, 0, 3}},
-                     {{-6, -4, 0}, {0, 8, 0}, {0, 0, 3}},
-                     {{6, -4, 0}, {0, 8, 0}, {0, 0, 3}}};
+  std::vector<detail::Rectangle> room = {{{-6, -4, 0}, {12, 0, 0}, {0, 8, 0}},
+                                         {{-6, -4, 0}, {12, 0, 0}, {0, 0, 3}},
+                                         {{-6, 4, 0}, {12, 0, 0}, {0, 0, 3}},
+                                         {{-6, -4, 0}, {0, 8, 0}, {0, 0, 3}},
+                                         {{6, -4, 0}, {0, 8, 0}, {0, 0, 3}}};
   const double place = 0.8 * (i % kRound / (kRound / 10)) - 4.0;
-  room.rectangles.push_back({{place, 1.5, 0.2}, {0.7, 0.0, 0.0}, {0.0, 0.0, 1.0}});
+  room.push_back({{place, 1.5, 0.2}, {0.7, 0.0, 0.0}, {0.0, 0.0, 1.0}});
   const double turn = 6.283185307 * (i % kRound) / kRound;
   Pose pose;
   pose.translation = {3.0 * std::cos(turn), 1.0 * std::sin(turn), 1.2};
@@ -33,7 +32,7 @@ Scan roomScan(int i) {
   lidar.rings = 8;
   lidar.columns = 90;
   lidar.threads = 1;
-  return asScan(simulateScan(room, pose, lidar, static_cast<std::uint64_t>(i)));
+  return asScan(simulateScan(worldOf(room), pose, lidar, static_cast<std::uint64_t>(i)));
 }
 
 std::size_t peakBytes() {

@@ -25,16 +25,15 @@ Scan floorScan(bool with_box, int number) {
   lidar.highest_deg = 5.0;
   lidar.columns = 1440;
   lidar.noise = 0.0;
-  Scene scene;
-  scene.rectangles.push_back({{2.0, -6.0, kFloor}, {12.1, 0.0, 0.0}, {0.0, 12.0, 0.0}});
-  scene.rectangles.push_back({{14.1, -6.0, kFloor}, {0.0, 12.0, 0.0}, {0.0, 0.0, 4.0}});
+  std::vector<Rectangle> rectangles = {{{2.0, -6.0, kFloor}, {12.1, 0.0, 0.0}, {0.0, 12.0, 0.0}},
+                                       {{14.1, -6.0, kFloor}, {0.0, 12.0, 0.0}, {0.0, 0.0, 4.0}}};
   if (with_box) {
-    scene.rectangles.push_back({{5.1, -0.5, kFloor}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}});
-    scene.rectangles.push_back({{5.1, -0.5, kFloor + 1.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}});
+    rectangles.push_back({{5.1, -0.5, kFloor}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}});
+    rectangles.push_back({{5.1, -0.5, kFloor + 1.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}});
   }
   Pose pose;
   pose.translation = {0.03 * (number % 4), 0.02 * (number % 4), 0.0};
-  return asScan(simulateScan(scene, pose, lidar));
+  return asScan(simulateScan(worldOf(rectangles), pose, lidar));
 }
 
 OnlineOptions floorOptions() {

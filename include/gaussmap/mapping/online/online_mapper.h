@@ -9,9 +9,10 @@
 #include <optional>
 #include <vector>
 
+#include "gaussmap/clustering/kl_kmeans.h"
 #include "gaussmap/core/scans.h"
 #include "gaussmap/map/gaussian_map.h"
-#include "gaussmap/mapping/moving/moving_cells.h"
+#include "gaussmap/mapping/moving/moving_points.h"
 #include "gaussmap/mapping/refine.h"
 #include "gaussmap/sensor/projection.h"
 #include "gaussmap/sensor/visibility.h"
@@ -20,14 +21,14 @@ namespace gaussmap {
 
 /// How much a point moves the cluster that it falls to.
 enum class LearningRate {
-  SampleMean,  ///< 1 / n: a cluster is the exact moments of its points, in any order; what a static map wants
+  SampleMean,  ///< 1 / n: a cluster is the exact moments of its points, in any order
   Occupancy    ///< Yguel 2009 eq. (5): little where the map has been seen often, more where it is uncertain
 };
 
-/// Which points of a cluster a range image is asked about.
+/// Which points of a cluster are tested against a range image.
 enum class OccupancySamples {
   Mean,   ///< its mean
-  Random  ///< as many samples from it as pixels may see it, Yguel 2009 eq. (1): the same decisions, slower
+  Random  ///< as many samples from it as pixels may see it, Yguel 2009 eq. (1): the same decisions, but slower
 };
 
 struct OnlineOptions {
@@ -40,23 +41,37 @@ struct OnlineOptions {
   OccupancyOptions occupancy;
   VisibilityOptions visibility;
   OccupancySamples samples = OccupancySamples::Mean;
-  std::optional<Projection> projection;     ///< of every scan; nothing: found, and again when a scan looks different
+  std::optional<Projection> projection;     ///< of every scan; nullopt: found, and again when a scan looks different
   std::optional<double> no_return_is_free;  ///< pixels without return are free space up to this range [m]
-  std::vector<double> max_ranges;  ///< per scale: cells farther from the sensor are not looked at [m]; none: no limit
+  std::vector<double> max_ranges;  ///< per scale: cells farther from the sensor are not tested [m]; empty: no limit
   int occupancy_every = 1;         ///< scans, >= 1
-  int look_back = 10;              ///< so many scans are kept: range images, asked about every new cell, and sums; >= 0
+  int look_back = 10;  ///< how many scans are kept: their range images, to test new cells, and their sums; >= 0
 
   bool forget = true;                        ///< delete clusters whose occupancy is below 0 ...
-  double link = MovingCellOptions().link;    ///< ... and what hangs together with them over such gaps [m] ...
-  double reach = MovingCellOptions().reach;  ///< ... so far away, and was only seen while they were [m]
-  SharedCellOptions shared;  ///< ... and, SampleMean only, what the last look_back scans saw of it beside a surface
+  double link = MovingCellOptions().link;    ///< ... and the rest of their objects: cells connected to them [m] ...
+  double reach = MovingCellOptions().reach;  ///< ... up to this far away, seen only while they were [m]
+  SharedCellOptions shared;  ///< SampleMean only: also what the last look_back scans saw of them beside a surface
 
   int refine_every = 10;         ///< scans; 0 = never
   std::size_t refine_cells = 0;  ///< p, most clusters added to a scale at a time; 0: as many as the budget allows (with
-                                 ///< the paper's 4 a drive of 20 scans ends at a third of its budget)
+                                 ///< the paper's 4, a drive of 20 scans ends at a third of its budget)
   double budget = 3.0;  ///< most Gaussians of a coarse scale after a refinement, as a multiple of its cells, >= 1
   RefineMethod method = RefineMethod::Agglomerate;
-  int threads = 0;  ///< 0 = all; never shows in the result
+  ClusterSeed seed_rule = ClusterSeed::ParentCovariance;  ///< RefineMethod::Insert only
+  int threads = 0;                                        ///< 0 = all cores
+
+  /// The system of Yguel 2009 as printed, for `dimensions` = 2 or 3; throws std::invalid_argument for another value.
+  /// - cells: three scales, ratio 10, finest side 0.05 m in 2-D, 0.1 m in 3-D (sec. 6);
+  /// - learning: the rate depends on the occupancy, eq. (5), between 5e-4 and 5e-2, o_max = 10 (sec. 4.4, Algorithm 1);
+  /// - occupancy: B samples per cluster, eq. (1), for every scan in 2-D and every third in 3-D (sec. 4.1, 6);
+  /// - deletion: clusters of low occupancy, and nothing beside them (sec. 5.3);
+  /// - refinement: every 10 scans the p = 4 cells of largest error of each scale get one cluster each, inserted with
+  /// the
+  ///   datum itself as seed (sec. 5.1, 6, Algorithm 2), as long as the budget lasts.
+  /// The paper prints no values for the hit and miss log-odds, the deletion threshold, when a beam passes through a
+  /// point, and the size of the budget: these keep their defaults. Two parts differ from the print: the error of eq.
+  /// (6) has no factor (1 - eps), and refinement may also choose a cell that an earlier scan touched.
+  static OnlineOptions yguel2009(int dimensions);
 };
 
 /// A deleted cluster and why it was deleted. At the finest scale it may be a part of one: what an object left in a

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap_benchmark --table: gaussmap beside its peers, measured in the same run, each in a process of its own.
+// gaussmap_benchmark table: gaussmap beside its peers, measured in the same run, each in a process of its own.
+// gaussmap_benchmark growth: time and memory against numbers of points and cells.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <random>
 
 #include "gaussmap/io/pcd/pcd_reader.h"
 #include "gaussmap/io/scans/pcd_scans.h"
 #include "gaussmap/mapping/accumulate_scans.h"
 #include "parts.h"
-#include "street_scene.h"
+#include "street_points.h"
+#include "subcommands.h"
 
 namespace gaussmap::benchmark {
 
@@ -42,7 +45,7 @@ void fill(const Options& options, const std::filesystem::path& work, Table& tabl
     measureBuilding({"kitti_6scans", scansIn(std::filesystem::path(options.data) / "kitti_6scans")}, options.runs,
                     false, table);
   for (const std::size_t count : options.points) {
-    const Input packets{"street, packets", cloudOf(benchmark_input::streetPoints(count, 0, 1))};
+    const Input packets{"street, packets", cloudOf(streetPoints(count, 0, 1))};
     const int runs = count > 10000000 ? std::min(options.runs, 3) : options.runs;
     const bool is_goal = count == options.points.front();
     measureBuilding(packets, runs, is_goal, table);
@@ -56,7 +59,7 @@ void fill(const Options& options, const std::filesystem::path& work, Table& tabl
   measureCommands(options, work, table);
 }
 
-/// A directory of our own that goes with us.
+/// A temporary directory, removed at the end.
 struct WorkDirectory {
   std::filesystem::path path = std::filesystem::temp_directory_path() / "gaussmap_benchmark_XXXXXX";
   WorkDirectory() {
@@ -70,45 +73,55 @@ struct WorkDirectory {
   }
 };
 
-}  // namespace
-}  // namespace gaussmap::benchmark
-
-int main(int argc, char** argv) try {
-  using namespace gaussmap::benchmark;
-  CLI::App app("gaussmap beside its peers");
-  Options options;
-  options.build = std::filesystem::canonical("/proc/self/exe").parent_path().parent_path().parent_path();
-  bool is_table = false;
-  bool is_growth = false;
-  std::vector<std::size_t> growth = {1000000, 5000000, 20000000, 80000000};
-  std::string json;
-  app.add_flag("--table", is_table, "everything, beside the peers");
-  app.add_flag("--growth", is_growth, "time and memory against points and cells, fitted");
-  app.add_option("--growth-points", growth, "numbers of points for it")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_option("--points", options.points, "of the simulated drive; goals are those of the first number")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_option("--data", options.data, "directory with kitti_6scans, rgbd_office_single, carmen_intel, ...")
-      ->check(CLI::ExistingDirectory);
-  app.add_option("--runs", options.runs, "the fastest counts")->check(CLI::Range(1, 1000))->capture_default_str();
-  app.add_option("--json", json, "write the figures for machines");
-  CLI11_PARSE(app, argc, argv);
-  if (!is_table && !is_growth) {
-    std::fprintf(stderr, "gaussmap_benchmark: --table or --growth\n");
-    return 2;
-  }
-  const WorkDirectory work;
-  Table table;
-  if (is_table) {
-    fill(options, work.path, table);
-    runOthers(options, work.path, table);
-  }
-  if (is_growth) measureGrowth(growth, table);
-  if (!json.empty()) writeJson(json, table);
-  return 0;
-} catch (const std::exception& error) {
-  std::fprintf(stderr, "gaussmap_benchmark: %s\n", error.what());
-  return 1;
+void addGrowthPoints(CLI::App& command, const char* name, std::vector<std::size_t>& points) {
+  points = {1000000, 5000000, 20000000, 80000000};
+  command.add_option(name, points, "numbers of points of growth")->check(CLI::PositiveNumber)->capture_default_str();
 }
+
+}  // namespace
+
+void addTable(CLI::App& app) {
+  struct Given : Options {
+    bool growth = false;
+    std::vector<std::size_t> growth_points;
+    std::string json;
+  };
+  const auto given = std::make_shared<Given>();
+  given->build = std::filesystem::canonical("/proc/self/exe").parent_path().parent_path().parent_path();
+  CLI::App& command = *app.add_subcommand("table", "gaussmap beside its peers");
+  command.add_flag("--growth", given->growth, "growth too");
+  addGrowthPoints(command, "--growth-points", given->growth_points);
+  command.add_option("--points", given->points, "of the simulated drive; goals are those of the first number")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_option("--data", given->data, "directory with kitti_6scans, rgbd_office_single, carmen_intel, ...")
+      ->check(CLI::ExistingDirectory);
+  command.add_option("--runs", given->runs, "the fastest counts")->check(CLI::Range(1, 1000))->capture_default_str();
+  command.add_option("--json", given->json, "write the figures for machines");
+  command.callback([given] {
+    const WorkDirectory work;
+    Table table;
+    fill(*given, work.path, table);
+    runOthers(*given, work.path, table);
+    if (given->growth) measureGrowth(given->growth_points, table);
+    if (!given->json.empty()) writeJson(given->json, table);
+  });
+}
+
+void addGrowth(CLI::App& app) {
+  struct Given {
+    std::vector<std::size_t> points;
+    std::string json;
+  };
+  const auto given = std::make_shared<Given>();
+  CLI::App& command = *app.add_subcommand("growth", "time and memory against points and cells, fitted");
+  addGrowthPoints(command, "--points", given->points);
+  command.add_option("--json", given->json, "write the figures for machines");
+  command.callback([given] {
+    Table table;
+    measureGrowth(given->points, table);
+    if (!given->json.empty()) writeJson(given->json, table);
+  });
+}
+
+}  // namespace gaussmap::benchmark

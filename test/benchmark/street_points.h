@@ -3,29 +3,29 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "gaussmap/core/gaussian.h"
 #include "gaussmap/core/pose.h"
+#include "mesh/shapes.h"
 #include "simulation/lidar.h"
-#include "simulation/scene.h"
 
-namespace gaussmap::benchmark_input {
+namespace gaussmap::benchmark {
 
 /// A straight street, 200 m long: ground, two building fronts, poles every 10 m, seen by a 64-ring lidar every 2 m.
 /// Points in the map frame, in packet order (all rings of a column, then the next column). The drive begins again after
-/// 80 scans, with other noise. `threads` = 0: all; never shows in the points.
+/// 80 scans, with other noise. `threads` = 0: all cores.
 inline std::vector<Vector<3>> streetPoints(std::size_t count, std::uint64_t first_scan = 0, int threads = 0) {
-  Scene scene;
-  scene.rectangles.push_back({{-100, -15, 0}, {200, 0, 0}, {0, 30, 0}});
-  for (const double y : {-15.0, 15.0}) scene.rectangles.push_back({{-100, y, 0}, {200, 0, 0}, {0, 0, 12}});
-  for (double x = -95; x < 100; x += 10) {
-    scene.cylinders.push_back({{x, -6, 0}, {0, 0, 6}, 0.15});
-    scene.cylinders.push_back({{x + 5, 6, 0}, {0, 0, 6}, 0.15});
-  }
+  constexpr double kPole = 0.15;  // its radius [m]
+  TriangleMesh mesh = detail::rectangleMesh({{-100, -15, 0}, {200, 0, 0}, {0, 30, 0}});
+  for (const double y : {-15.0, 15.0}) append(mesh, detail::rectangleMesh({{-100, y, 0}, {200, 0, 0}, {0, 0, 12}}));
+  for (double x = -95; x < 100; x += 10)
+    for (const Eigen::Vector3d& foot : {Eigen::Vector3d(x, -6, 0), Eigen::Vector3d(x + 5, 6, 0)})
+      append(mesh, detail::cylinderMesh({foot, {0, 0, 6}, kPole}, detail::facetsWithin(1e-4, kPole)));
   Pose turn;
   turn.rotation = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ());  // walls not aligned with cells
-  scene = scene.transformed(turn);
+  const World world(transformed(std::move(mesh), turn));
   LidarOptions lidar;
   lidar.rings = 64;
   lidar.max_range = 100.0;
@@ -35,11 +35,11 @@ inline std::vector<Vector<3>> streetPoints(std::size_t count, std::uint64_t firs
   for (std::uint64_t step = first_scan; points.size() < count; ++step) {
     Pose pose = turn;
     pose.translation = turn.rotation * Eigen::Vector3d(-80.0 + 2.0 * static_cast<double>(step % 80), 0.3, 1.8);
-    for (const Eigen::Vector3d& point : simulateScan(scene, pose, lidar, step).points)
+    for (const Eigen::Vector3d& point : simulateScan(world, pose, lidar, step).points)
       points.push_back(pose.rotation * point + pose.translation);
   }
   points.resize(count);
   return points;
 }
 
-}  // namespace gaussmap::benchmark_input
+}  // namespace gaussmap::benchmark

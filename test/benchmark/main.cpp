@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// gaussmap_benchmark SUBCOMMAND: everything that is measured, see test/benchmark/RESULTS.md.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "subcommands.h"
+
+int main(int argc, char** argv) try {
+  using namespace gaussmap::benchmark;
+  CLI::App app("Benchmarks of gaussmap");
+  app.require_subcommand(1);
+#ifdef GAUSSMAP_BENCHMARK_PCL
+  addTable(app);
+  addGrowth(app);
+  addRegistration(app);
+  addNormals(app);
+  addFilters(app);
+#endif
+  addRefinementTable(app);
+  addRefinementSpeed(app);
+  addSegments(app);
+  addMovingPoints(app);
+  addFinishedSize(app);
+#ifdef GAUSSMAP_BENCHMARK_VIEWER
+  addFrameTimes(app);
+#endif
+  addReference(app);
+  addWideScans(app);
+  addBoxLoad(app);
+  CLI11_PARSE(app, argc, argv);
+  return 0;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "gaussmap_benchmark: %s\n", error.what());
+  return 1;
+}

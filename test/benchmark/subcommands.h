@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+// Each function adds one subcommand to the program. The subcommand runs while the arguments are parsed.
+namespace gaussmap::benchmark {
+
+void addTable(CLI::App& app);   // with PCL
+void addGrowth(CLI::App& app);  // with PCL
+void addRefinementTable(CLI::App& app);
+void addRefinementSpeed(CLI::App& app);
+void addMovingPoints(CLI::App& app);
+void addFinishedSize(CLI::App& app);
+void addSegments(CLI::App& app);
+void addRegistration(CLI::App& app);  // with PCL
+void addNormals(CLI::App& app);       // with PCL
+void addFilters(CLI::App& app);       // with PCL
+void addFrameTimes(CLI::App& app);    // with the viewer
+void addReference(CLI::App& app);
+void addWideScans(CLI::App& app);
+void addBoxLoad(CLI::App& app);
+
+}  // namespace gaussmap::benchmark
