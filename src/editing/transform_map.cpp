@@ -17,6 +17,7 @@
 #include "map/areas.h"
 #include "map/coarsen.h"
 #include "map/inherit_occupancy.h"
+#include "map/map_scale_builder.h"
 #include "mapping/cluster_cuts.h"
 
 namespace gaussmap {
@@ -153,15 +154,14 @@ class Mover {
     keys.reserve(all.size());
     for (const Traveller<D>& one : all) keys.push_back(one.key);
     std::vector<std::uint32_t> order = keyOrder<D>(keys, grid_.options().ratio, grid_.scales() - 1);
-    MapScale<D> finest;
+    MapScaleBuilder<D> finest;
     for (std::size_t first = 0, last = 0; first < order.size(); first = last) {
       const CellKey<D>& key = keys[order[first]];
       for (last = first + 1; last < order.size() && keys[order[last]] == key;) ++last;
       // Long codes are sorted without regard to the order of equals.
       std::sort(order.begin() + static_cast<std::ptrdiff_t>(first), order.begin() + static_cast<std::ptrdiff_t>(last));
       const Vector<D> centre = grid_.centre(key, 0);
-      finest.keys.push_back(key);
-      finest.first_gaussian.push_back(static_cast<std::uint32_t>(finest.gaussians.size()));
+      finest.addCell(key);
       std::vector<Gaussian<D>> here;
       float highest = -kMaxOccupancy;
       for (std::size_t i = first; i < last; ++i) {
@@ -171,17 +171,15 @@ class Mover {
         here.back().mean -= centre;
         if (!same_cells_) continue;
         group.push_back(one.group);
-        if (map_.hasOccupancy()) finest.log_odds.push_back(one.log_odds);
+        if (map_.hasOccupancy()) finest.addLogOdds(one.log_odds);
       }
       if (!same_cells_) {
         here = {merge(here)};
-        if (map_.hasOccupancy()) finest.log_odds.push_back(highest);
+        if (map_.hasOccupancy()) finest.addLogOdds(highest);
       }
-      finest.gaussians.insert(finest.gaussians.end(), here.begin(), here.end());
+      for (const Gaussian<D>& gaussian : here) finest.addGaussian(gaussian);
     }
-    finest.first_gaussian.push_back(static_cast<std::uint32_t>(finest.gaussians.size()));
-    if (finest.gaussians.size() == finest.keys.size()) finest.first_gaussian.clear();
-    return finest;
+    return finest.take();
   }
 
   /// `group` = the old cluster of scale 1 that each finest Gaussian comes from. Above, there are few Gaussians below a
