@@ -265,9 +265,9 @@ class Merger {
     if (s > 1) startAnew(finer, keep, s, group);
     const Regrouping<D> from{finer, a_.grid(), s, group, areas, options_.threads};
     Regrouped<D> made = regroup<D>(from, [&](const MapScale<D>& scale, const std::vector<double>& own_areas) {
-      if (!is_refined_) return oneACell<D>(scale);
-      return ClusterCuts<D>(scale, a_.grid(), s, own_areas, options_.merge_cost, options_.threads)
-          .withExtra(extra, keep);
+      if (!is_refined_) return onePerCell<D>(scale);
+      return ScaleClusters::within(scale, a_.grid(), s, own_areas, options_.merge_cost, options_.threads, keep)
+          .cut(extra);
     });
     group.clear();
     if (s + 1 < a_.scales()) {

@@ -18,7 +18,7 @@
 #include "map/coarsen.h"
 #include "map/inherit_occupancy.h"
 #include "map/map_scale_builder.h"
-#include "mapping/cluster_cuts.h"
+#include "mapping/scale_clusters.h"
 
 namespace gaussmap {
 using namespace detail;
@@ -192,9 +192,9 @@ class Mover {
     const Regrouping<D> from{finer, grid_, s, group, areas, options_.threads};
     Regrouped<D> made = regroup<D>(from, [&](const MapScale<D>& scale, const std::vector<double>& own_areas) {
       const std::size_t cells = scale.keys.size();
-      if (!is_refined || map_.gaussianCount(s) <= cells) return oneACell<D>(scale);
-      return ClusterCuts<D>(scale, grid_, s, own_areas, options_.merge_cost, options_.threads)
-          .withExtra(map_.gaussianCount(s) - cells);
+      if (!is_refined || map_.gaussianCount(s) <= cells) return onePerCell<D>(scale);
+      return ScaleClusters::within(scale, grid_, s, own_areas, options_.merge_cost, options_.threads)
+          .cut(map_.gaussianCount(s) - cells);
     });
     group = std::move(made.group);
     areas = std::move(made.areas);
@@ -207,6 +207,7 @@ class Mover {
     RefineOptions refinement;
     refinement.merge_cost = options_.merge_cost;
     refinement.threads = options_.threads;
+    MaxGaussians budget;
     bool is_refined = false;
     for (int s = 1; s < grid_.scales(); ++s) {
       MapScale<D> coarse = coarsen(scales.back(), grid_, s - 1);
@@ -215,11 +216,11 @@ class Mover {
       const int as = std::min(s, map_.scales() - 1);
       const auto cells = static_cast<double>(scales.back().keys.size());
       const double per_cell = static_cast<double>(map_.gaussianCount(as)) / static_cast<double>(map_.cellCount(as));
-      refinement.max_gaussians[s] = static_cast<std::size_t>(cells * per_cell);
-      is_refined |= refinement.max_gaussians[s] > scales.back().keys.size();
+      budget.by_scale[s] = static_cast<std::size_t>(cells * per_cell);
+      is_refined |= budget.by_scale[s] > scales.back().keys.size();
     }
     GaussianMap<D> map(grid_.options(), std::move(scales));
-    return is_refined ? refine<D>(std::move(map), refinement) : map;
+    return is_refined ? refine<D>(std::move(map), budget, refinement).map : map;
   }
 
   const GaussianMap<D>& map_;

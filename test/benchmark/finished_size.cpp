@@ -111,9 +111,7 @@ void run(const fs::path& folder) {
     scans.push_back(loadScan(sources.back()));
   }
   const MeshDistance truth(readPly(folder / "truth.ply"));
-  RefineOptions refining;
-  refining.budget = 2.0;
-  const GaussianMap<3> map = refine<3>(build<3>(accumulateScans(sources, {}).moments, MapOptions()), refining);
+  const GaussianMap<3> map = refine<3>(build<3>(accumulateScans(sources, {}).moments, MapOptions()), PerCell{2.0}).map;
 
   std::string work = (fs::temp_directory_path() / "gaussmap-finished-XXXXXX").string();
   if (::mkdtemp(work.data()) == nullptr) throw std::runtime_error("no temporary directory");
