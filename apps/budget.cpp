@@ -5,25 +5,14 @@
 #include <iostream>
 #include <map>
 
+#include "gaussmap/io/gmap/map_history.h"
+
 namespace gaussmap::app {
 namespace {
 
 const std::map<std::string, RefineMethod> kMethods = {{"agglomerate", RefineMethod::Agglomerate},
                                                       {"insert", RefineMethod::Insert}};
-const std::map<std::string, MergeCost> kCosts = {
-    {"volume", MergeCost::Volume}, {"runnalls", MergeCost::Runnalls}, {"volume-area", MergeCost::VolumeArea}};
-const std::map<std::string, CellChoice> kCellChoices = {{"error", CellChoice::Error}, {"volume", CellChoice::Volume}};
-
-Json jsonOf(const std::vector<ErrorCurve>& curves) {
-  Json all = Json::array();
-  for (const ErrorCurve& curve : curves) {
-    Json points = Json::array();
-    for (const ErrorPoint& point : curve.points)
-      points.push_back({{"gaussians", point.gaussians}, {"q99", point.q99}, {"q95", point.q95}, {"mean", point.mean}});
-    all.push_back({{"scale", curve.scale}, {"points", points}});
-  }
-  return all;
-}
+const std::map<std::string, MergeCost> kCosts = {{"volume", MergeCost::Volume}, {"runnalls", MergeCost::Runnalls}};
 
 bool isUnrefined(const GaussianMap<3>& map) {
   for (int s = 1; s < map.scales(); ++s)
@@ -73,8 +62,22 @@ std::map<int, std::size_t> maxGaussians(const BudgetInput& input, const Gaussian
   return limits;
 }
 
-std::uintmax_t maxBytes(const BudgetInput& input) {
-  return amountOf("--max-bytes", input.max_bytes, true);
+Budget budgetOf(const BudgetInput& input, const GaussianMap<3>& map, int first_scale) {
+  if (!input.max_bytes.empty()) return MaxBytes{amountOf("--max-bytes", input.max_bytes, true), {}};
+  if (input.max_error > 0.0) return MaxError{input.max_error, {}};
+  if (!input.max_gaussians.empty()) return MaxGaussians{maxGaussians(input, map, first_scale)};
+  return PerCell{input.budget};
+}
+
+void measureFile(Budget& budget, const MapMetadata& metadata, int threads) {
+  if (const auto* bytes = std::get_if<MaxBytes>(&budget))
+    budget = maxFileBytes(bytes->bytes, metadata, {false, SaveOptions().compression, threads});
+}
+
+std::string detailsOf(const BudgetInput& input, Json step) {
+  if (input.cost) step["cost"] = *input.cost;
+  if (!input.max_gaussians.empty()) step["max_gaussians"] = input.max_gaussians;
+  return step.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 MergeCost mergeCost(const BudgetInput& input) {
@@ -104,10 +107,9 @@ void addLimitOptions(CLI::App& command, BudgetInput& input) {
 
 void addCostOption(CLI::App& command, BudgetInput& input) {
   command
-      .add_option(
-          "--cost", input.cost,
-          "what clusters are merged by (agglomeration): growth of the ellipsoids' volume (default); runnalls: loss of "
-          "likelihood; volume-area: large surfaces resist longer")
+      .add_option("--cost", input.cost,
+                  "what clusters are merged by (agglomeration): growth of the ellipsoids' volume (default); runnalls: "
+                  "loss of likelihood")
       ->check(CLI::IsMember(kCosts));
 }
 
@@ -120,77 +122,37 @@ void addBudgetOptions(CLI::App& command, BudgetInput& input) {
       ->check(CLI::IsMember(kMethods))
       ->capture_default_str();
   addCostOption(command, input);
-  command
-      .add_option("--cells", input.cells,
-                  "which cells --method insert gives the next cluster to: of largest error (default, the paper's), or "
-                  "of largest volume of ellipsoids")
-      ->check(CLI::IsMember(kCellChoices));
   addSeed(command, input.refine.seed, "of the random swaps of --method insert");
   addThreads(command, input.refine.threads);
 }
 
 void checkBudget(const BudgetInput& input) {
-  if (!input.max_bytes.empty()) maxBytes(input);
+  if (!input.max_bytes.empty()) amountOf("--max-bytes", input.max_bytes, true);
   if (input.method == "insert" && (!input.max_bytes.empty() || input.max_error > 0.0))
     throw UsageError("--method insert: knows --budget and --max-gaussians only");
   if (input.method == "insert" && input.cost) throw UsageError("--cost: for --method agglomerate only");
-  if (input.method != "insert" && input.cells) throw UsageError("--cells: for --method insert only");
 }
 
 GaussianMap<3> refineWithin(GaussianMap<3> map, const BudgetInput& input, MapMetadata& metadata, Json step) {
+  Budget budget = budgetOf(input, map, 1);
   RefineOptions options = input.refine;
-  options.budget = input.budget;
   options.method = kMethods.at(input.method);
   options.merge_cost = mergeCost(input);
-  if (input.cells) options.cell_choice = kCellChoices.at(*input.cells);
-  options.max_gaussians = maxGaussians(input, map, 1);
-  step["method"] = input.method;
-  if (input.cost) step["cost"] = *input.cost;
-  if (input.cells) step["cells"] = *input.cells;
-  const auto keepCurves = [](MapMetadata& into, const std::vector<ErrorCurve>& curves) {
-    into["error_curves"] = jsonOf(curves).dump();
-  };
-  metadata.erase("error_curves");  // of the map as it was
-
-  if (!input.max_bytes.empty()) {
-    const std::uintmax_t most = maxBytes(input);
-    step["max_bytes"] = most;
-    addHistory(metadata, step);
-    const SaveOptions saving{false, SaveOptions().compression, options.threads};
-    RefinedMap refined = refineToBytes(
-        map, most,
-        [&](const RefinedMap& tried) {
-          MapMetadata with = metadata;
-          keepCurves(with, tried.curves);
-          return savedSize<3>(tried.map, with, saving);
-        },
-        options);
-    keepCurves(metadata, refined.curves);
-    return std::move(refined.map);
-  }
-  if (input.max_error > 0.0) {
-    step["max_error"] = input.max_error;
-    addHistory(metadata, step);
-    RefinedToError to_error = refineToError(std::move(map), input.max_error, options);
-    for (const ErrorNotReached& scale : to_error.not_reached)
-      std::cerr << "gaussmap: warning: scale " << scale.scale << " does not reach --max-error " << input.max_error
-                << ": with all that the finer scale's Gaussians allow 95 % are within " << scale.q95 << " m\n";
-    keepCurves(metadata, to_error.refined.curves);
-    return std::move(to_error.refined.map);
-  }
-  if (options.max_gaussians.empty())
-    step["budget"] = options.budget;
-  else
-    step["max_gaussians"] = input.max_gaussians;
-  if (options.method == RefineMethod::Insert) step["seed"] = options.seed;
-  addHistory(metadata, step);
-  const bool one_per_cell = options.max_gaussians.empty() && options.budget == 1.0;
+  const auto* per_cell = std::get_if<PerCell>(&budget);
+  const bool one_per_cell = per_cell != nullptr && per_cell->gaussians == 1.0;
+  const bool is_searched = !input.max_bytes.empty() || input.max_error > 0.0;
+  if (is_searched || (input.curves && !one_per_cell && options.method == RefineMethod::Agglomerate))
+    options.curves.emplace();
+  recordStep(metadata, refineStep(budget, options, detailsOf(input, std::move(step))));
+  recordCurves(metadata, {});  // of the map as it was
   if (one_per_cell && isUnrefined(map)) return map;
-  if (one_per_cell || !input.curves || options.method == RefineMethod::Insert)
-    return refine<3>(std::move(map), options);
-  RefinedMap refined = refineWithCurves(std::move(map), options);
-  keepCurves(metadata, refined.curves);
-  return std::move(refined.map);
+  measureFile(budget, metadata, options.threads);
+  RefineResult<3> result = refine<3>(std::move(map), budget, options);
+  for (const NotReached& scale : result.not_reached)
+    std::cerr << "gaussmap: warning: scale " << scale.scale << " does not reach --max-error " << input.max_error
+              << ": with all that the finer scale's Gaussians allow 95 % are within " << scale.q95 << " m\n";
+  recordCurves(metadata, result.curves);
+  return std::move(result.map);
 }
 
 }  // namespace gaussmap::app

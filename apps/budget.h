@@ -7,21 +7,20 @@
 #include <vector>
 
 #include "common.h"
-#include "gaussmap/mapping/error_curve.h"
+#include "gaussmap/mapping/refine.h"
 
 namespace gaussmap::app {
 
 /// How many Gaussians the coarse scales may have: the same words for every command that refines.
 struct BudgetInput {
-  double budget = RefineOptions().budget;
+  double budget = PerCell().gaussians;
   std::vector<std::string> max_gaussians;  // "N" or "SCALE=N"
   std::string max_bytes;                   // with suffix k, M, G
   double max_error = 0.0;                  // [m], 0: not given
   std::string method = "agglomerate";
-  std::optional<std::string> cost;   // of merges, --method agglomerate only
-  std::optional<std::string> cells;  // which cells are served first, --method insert only
-  RefineOptions refine;              // seed and threads
-  bool curves = true;                // measure what other budgets would give
+  std::optional<std::string> cost;  // of merges, --method agglomerate only
+  RefineOptions refine;             // seed and threads
+  bool curves = true;               // measure what other budgets would give
 };
 void addBudgetOptions(CLI::App& command, BudgetInput& input);
 /// Two parts of these, for commands that merge clusters only: the budgets without a default, and --cost.
@@ -38,9 +37,14 @@ void checkBudget(const BudgetInput& input);
 /// --max-gaussians by scale: "N" is for every coarse scale (of a map of one scale: that), "SCALE=N" for one, and
 /// stronger. Throws UsageError for scales below `first_scale`, and for fewer than a scale has cells.
 std::map<int, std::size_t> maxGaussians(const BudgetInput& input, const GaussianMap<3>& map, int first_scale);
-/// --max-bytes, which is given. Throws UsageError.
-std::uintmax_t maxBytes(const BudgetInput& input);
+/// What the words say, for a map whose scales from `first_scale` on may be limited. MaxBytes has no size_of yet.
+/// Throws UsageError.
+Budget budgetOf(const BudgetInput& input, const GaussianMap<3>& map, int first_scale);
 MergeCost mergeCost(const BudgetInput& input);
+/// `step` with the words of the budget as they were typed, for refineStep() and simplifyStep().
+std::string detailsOf(const BudgetInput& input, Json step);
+/// Gives MaxBytes the size of the map file with this metadata.
+void measureFile(Budget& budget, const MapMetadata& metadata, int threads);
 
 /// The map within its budget. Adds the error curves to the metadata, and `step`, completed by the budget, to the
 /// history; warns on stderr of scales that cannot reach --max-error.

@@ -6,6 +6,7 @@
 #include "budget.h"
 #include "common.h"
 #include "gaussmap/io/gmap/build_map_file.h"
+#include "gaussmap/io/gmap/map_history.h"
 #include "gaussmap/io/scans/pcd_scans.h"
 #include "gaussmap/mapping/build.h"
 #include "online.h"
@@ -79,7 +80,7 @@ Written buildWithinMemory(const Pcd2mapOptions& options, const Scans& scans, con
   BuildMapFileOptions building;
   building.max_memory = amountOf("--max-memory", options.max_memory, true);
   building.refine = options.budget.refine;
-  building.refine.budget = options.budget.budget;
+  building.budget = PerCell{options.budget.budget};
   building.refine.merge_cost = mergeCost(options.budget);
   building.save = {options.output.force, SaveOptions().compression, options.budget.refine.threads};
   ProgressBar bar;
@@ -88,11 +89,9 @@ Written buildWithinMemory(const Pcd2mapOptions& options, const Scans& scans, con
       [&](const PointCounts& counts) {
         requirePoints(counts, scans);
         MapMetadata metadata;
-        Json step = historyOf(scans, counts);  // as refineWithin() writes it: the file is the same
-        step["method"] = options.budget.method;
-        if (options.budget.cost) step["cost"] = *options.budget.cost;
-        step["budget"] = options.budget.budget;
-        addHistory(metadata, step);
+        // As refineWithin() writes it: the file is the same.
+        const std::string details = detailsOf(options.budget, historyOf(scans, counts));
+        recordStep(metadata, refineStep(building.budget, building.refine, details));
         return metadata;
       },
       building, [&](const AccumulateProgress& progress) { bar.show(progress); });

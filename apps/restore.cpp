@@ -85,13 +85,14 @@ GaussianMap<3> rebuilt(const MomentGrid<3>& sums, const GaussianMap<3>& old, int
   GaussianMap<3> map = build<3>(sums, old.options());
   if (old.hasOccupancy()) map = withOccupancy<3>(map, occupancyAfter(map, old));
   RefineOptions options;
+  MaxGaussians budget;
   options.threads = threads;
   bool is_unrefined = true;
   for (int s = 1; s < map.scales(); ++s) {
-    options.max_gaussians[s] = std::max(old.gaussianCount(s), map.cellCount(s));
-    is_unrefined = is_unrefined && options.max_gaussians[s] == map.cellCount(s);
+    budget.by_scale[s] = std::max(old.gaussianCount(s), map.cellCount(s));
+    is_unrefined = is_unrefined && budget.by_scale[s] == map.cellCount(s);
   }
-  return is_unrefined ? map : refine<3>(std::move(map), options);
+  return is_unrefined ? map : refine<3>(std::move(map), budget, options).map;
 }
 
 void run(const RestoreCommand& options) {

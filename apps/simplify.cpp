@@ -6,6 +6,7 @@
 
 #include "budget.h"
 #include "common.h"
+#include "gaussmap/io/gmap/map_history.h"
 #include "gaussmap/io/pcd/map_pcd.h"
 
 namespace gaussmap::app {
@@ -23,35 +24,15 @@ struct SimplifyCommand {
 /// Completes `step` by the limit and adds it to the history.
 GaussianMap<3> simplified(const GaussianMap<3>& map, const SimplifyCommand& command, MapMetadata& metadata, Json step) {
   const BudgetInput& limit = command.limit;
-  SimplifyOptions options;
-  options.merge_cost = mergeCost(limit);
-  options.threads = limit.refine.threads;
-  if (limit.cost) step["cost"] = *limit.cost;
-  if (!limit.max_bytes.empty()) {
-    step["max_bytes"] = maxBytes(limit);
-    addHistory(metadata, step);
-    const SaveOptions saving{false, SaveOptions().compression, options.threads};
-    return simplifyToBytes(
-        map, maxBytes(limit), [&](const GaussianMap<3>& trial) { return savedSize<3>(trial, metadata, saving); },
-        options);
-  }
-  if (limit.max_error > 0.0) {
-    step["max_error"] = limit.max_error;
-    addHistory(metadata, step);
-    SimplifiedToError to_error = simplifyToError(map, limit.max_error, options);
-    for (const ErrorNotReached& scale : to_error.not_reached)
-      warn("scale " + std::to_string(scale.scale) + " is farther away than --max-error as it came: 95 % are within " +
-           Json(scale.q95).dump() + " m; nothing of it was merged");
-    return std::move(to_error.map);
-  }
-  options.max_gaussians = maxGaussians(limit, map, 0);
-  if (command.has_budget) options.budget = limit.budget;
-  if (command.has_budget)
-    step["budget"] = limit.budget;
-  else
-    step["max_gaussians"] = limit.max_gaussians;
-  addHistory(metadata, step);
-  return simplify<3>(map, options);
+  const SimplifyOptions options{mergeCost(limit), limit.refine.threads};
+  Budget budget = budgetOf(limit, map, 0);
+  recordStep(metadata, simplifyStep(budget, options, detailsOf(limit, std::move(step))));
+  measureFile(budget, metadata, options.threads);
+  RefineResult<3> result = simplify<3>(map, budget, options);
+  for (const NotReached& scale : result.not_reached)
+    warn("scale " + std::to_string(scale.scale) + " is farther away than --max-error as it came: 95 % are within " +
+         Json(scale.q95).dump() + " m; nothing of it was merged");
+  return std::move(result.map);
 }
 
 void run(const SimplifyCommand& options) {

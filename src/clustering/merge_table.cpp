@@ -103,8 +103,6 @@ GAUSSMAP_INLINE void costLoop(const MergeColumns<D>& columns, std::size_t i, std
     const double apart = size_i + size[j];
     if constexpr (Cost == MergeCost::Runnalls)
       out[j] = 0.5 * (sum * naturalLogarithm(det) - apart);
-    else if constexpr (Cost == MergeCost::VolumeArea)
-      out[j] = (std::sqrt(det) - apart) * std::sqrt(sum);
     else
       out[j] = std::sqrt(det) - apart;
   }
@@ -119,8 +117,6 @@ GAUSSMAP_COST_LOOP(2, Volume)
 GAUSSMAP_COST_LOOP(3, Volume)
 GAUSSMAP_COST_LOOP(2, Runnalls)
 GAUSSMAP_COST_LOOP(3, Runnalls)
-GAUSSMAP_COST_LOOP(2, VolumeArea)
-GAUSSMAP_COST_LOOP(3, VolumeArea)
 #undef GAUSSMAP_COST_LOOP
 
 [[noreturn]] void refuse(std::size_t j, const std::string& what) {
@@ -188,13 +184,11 @@ MergeTable<D>::MergeTable(const std::vector<Gaussian<D>>& data, const std::vecto
 template <int D>
 void MergeTable<D>::costs(std::size_t i, std::size_t first, std::size_t last, double* out) const {
   if constexpr (D == 2) {
-    if (cost_ == MergeCost::Volume) return costsVolume2(columns_, i, first, last, out);
     if (cost_ == MergeCost::Runnalls) return costsRunnalls2(columns_, i, first, last, out);
-    costsVolumeArea2(columns_, i, first, last, out);
+    costsVolume2(columns_, i, first, last, out);
   } else {
-    if (cost_ == MergeCost::Volume) return costsVolume3(columns_, i, first, last, out);
     if (cost_ == MergeCost::Runnalls) return costsRunnalls3(columns_, i, first, last, out);
-    costsVolumeArea3(columns_, i, first, last, out);
+    costsVolume3(columns_, i, first, last, out);
   }
 }
 

@@ -17,13 +17,10 @@ struct Worst {
 };
 
 template <int D>
-Worst worstDatum(const KLProblem<D>& problem, const KLPartition<D>& partition, WorstDatum rule) {
+Worst worstDatum(const KLProblem<D>& problem, const KLPartition<D>& partition) {
   const Eigen::VectorXd distances = problem.ownDistances(partition);
   Eigen::Index index = 0;  // the first of several
-  if (rule == WorstDatum::Distance)
-    distances.maxCoeff(&index);
-  else
-    distances.cwiseProduct(problem.weights()).maxCoeff(&index);
+  distances.maxCoeff(&index);
   const auto j = static_cast<std::size_t>(index);
   return {j, static_cast<std::size_t>(partition.labels[j]), distances(index)};
 }
@@ -76,8 +73,7 @@ template <int D>
 KLPartition<D> insertSeed(const KLProblem<D>& problem, const KLPartition<D>& partition,
                           const KLKMeansOptions& options) {
   std::vector<Gaussian<D>> references = partition.references;
-  references.push_back(
-      seedAt(problem, partition, worstDatum(problem, partition, options.worst_rule), options.seed_rule));
+  references.push_back(seedAt(problem, partition, worstDatum(problem, partition), options.seed_rule));
   return problem.run(std::move(references), options, partition.assignment);
 }
 
@@ -85,7 +81,7 @@ template <int D>
 int swapLoop(const KLProblem<D>& problem, const KLKMeansOptions& options, Random& random, KLPartition<D>& partition) {
   int swaps = 0;
   for (; swaps < options.max_swaps && partition.references.size() > 1; ++swaps) {
-    const Worst worst = worstDatum(problem, partition, options.worst_rule);
+    const Worst worst = worstDatum(problem, partition);
     std::vector<Gaussian<D>> references = partition.references;
     references[leastNeeded(partition, worst, random)] = seedAt(problem, partition, worst, options.seed_rule);
     KLPartition<D> swapped = problem.run(std::move(references), options, partition.assignment);

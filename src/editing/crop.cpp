@@ -8,6 +8,7 @@
 #include "map/coarsen.h"
 #include "map/inherit_occupancy.h"
 #include "map/link_cells.h"
+#include "map/map_scale_builder.h"
 
 namespace gaussmap {
 using namespace detail;
@@ -41,26 +42,19 @@ Stay whatStays(const GaussianMap<D>& map, int s, const Stay& finer,
 template <int D>
 MapScale<D> cropped(const GaussianMap<D>& map, int s, const Stay& stay, std::vector<std::uint32_t>& places) {
   const MapScale<D>& old = map.scale(s);
-  MapScale<D> scale;
+  MapScaleBuilder<D> scale;
   places.assign(stay.stays.size(), 0);
-  std::uint32_t next = 0;
   for (std::size_t cell = 0; cell < old.keys.size(); ++cell) {
-    const std::uint32_t first = next;
     const IndexRange range = map.gaussiansOf(cell, s);
+    bool is_first = true;
     for (std::size_t i = range.first; i < range.last; ++i) {
       if (!stay.stays[i]) continue;
-      places[i] = next++;
-      if (!old.gaussians.empty()) scale.gaussians.push_back(old.gaussians[i]);
-      if (!old.moments.empty()) scale.moments.push_back(old.moments[i]);
-      if (!old.log_odds.empty()) scale.log_odds.push_back(old.log_odds[i]);
+      if (std::exchange(is_first, false)) scale.addCell(old.keys[cell]);
+      places[i] = static_cast<std::uint32_t>(scale.gaussians());
+      scale.copyGaussian(old, i);
     }
-    if (next == first) continue;
-    scale.keys.push_back(old.keys[cell]);
-    scale.first_gaussian.push_back(first);
   }
-  scale.first_gaussian.push_back(next);
-  if (next == scale.keys.size()) scale.first_gaussian.clear();
-  return scale;
+  return scale.take();
 }
 
 /// Sums the clusters that shrink anew from what is linked to them.

@@ -13,6 +13,7 @@
 
 #include "editing/regroup.h"
 #include "map/areas.h"
+#include "map/map_scale_builder.h"
 #include "mapping/blur.h"
 
 namespace gaussmap {
@@ -119,22 +120,21 @@ class Merger {
   }
 
   MapScale<D> addMoments(std::vector<std::uint32_t>& group) const {
-    MapScale<D> finest;
-    finest.keys.reserve(pairs(0).size());
-    finest.moments.reserve(pairs(0).size());
+    MapScaleBuilder<D> finest;
+    finest.reserveMoments(pairs(0).size());
     for (const CellPair& pair : pairs(0)) {
-      finest.keys.push_back(keyOf(pair, 0));
+      finest.addCell(keyOf(pair, 0));
       CellMoments<D> moments;
       if (pair.a) moments = a_.scale(0).moments[*pair.a];
       if (pair.b) {
         const CellMoments<D>& more = b_.scale(0).moments[*pair.b];
         if (more.count > CellMoments<D>::kMostPoints - moments.count)
-          throw std::invalid_argument("cell " + toString<D>(finest.keys.back()) + " would hold " +
+          throw std::invalid_argument("cell " + toString<D>(finest.key()) + " would hold " +
                                       std::to_string(moments.count + more.count) +
                                       " points, more than 2^33 - 1: take finer cells");
         moments += more;
       }
-      finest.moments.push_back(moments);
+      finest.addMoments(moments);
       const bool is_more_b =
           pair.b && (!pair.a || b_.scale(0).moments[*pair.b].count > a_.scale(0).moments[*pair.a].count);
       group.push_back(parentGroup(is_more_b, is_more_b ? *pair.b : *pair.a));
@@ -142,9 +142,9 @@ class Merger {
       const auto logOdds = [](const GaussianMap<D>& map, const std::optional<std::size_t>& cell) {
         return cell ? std::optional<float>(map.logOdds(*cell, 0)) : std::nullopt;
       };
-      finest.log_odds.push_back(combined(logOdds(a_, pair.a), logOdds(b_, pair.b)));
+      finest.addLogOdds(combined(logOdds(a_, pair.a), logOdds(b_, pair.b)));
     }
-    return finest;
+    return finest.take();
   }
 
   /// The Gaussians that both maps have in a finest cell, in an order that does not tell which map came first.
@@ -190,37 +190,33 @@ class Merger {
   }
 
   MapScale<D> mergeGaussians(std::vector<std::uint32_t>& group) const {
-    MapScale<D> finest;
-    finest.keys.reserve(pairs(0).size());
-    finest.gaussians.reserve(pairs(0).size());
+    MapScaleBuilder<D> finest;
+    finest.reserveGaussians(pairs(0).size(), pairs(0).size());
     const auto copy = [&](const GaussianMap<D>& map, std::size_t cell, bool in_b) {
       const IndexRange range = map.gaussiansOf(cell, 0);
       for (std::size_t i = range.first; i < range.last; ++i) {
         group.push_back(parentGroup(in_b, i));
-        finest.gaussians.push_back(map.localGaussian(i, 0));
-        if (knowsOccupancy()) finest.log_odds.push_back(map.logOdds(i, 0));
+        finest.addGaussian(map.localGaussian(i, 0));
+        if (knowsOccupancy()) finest.addLogOdds(map.logOdds(i, 0));
       }
     };
     for (const CellPair& pair : pairs(0)) {
-      finest.keys.push_back(keyOf(pair, 0));
-      finest.first_gaussian.push_back(static_cast<std::uint32_t>(finest.gaussians.size()));
+      finest.addCell(keyOf(pair, 0));
       if (pair.a && pair.b)
         mergeCell(pair, finest, group);
       else
         pair.a ? copy(a_, *pair.a, false) : copy(b_, *pair.b, true);
     }
-    finest.first_gaussian.push_back(static_cast<std::uint32_t>(finest.gaussians.size()));
-    if (finest.gaussians.size() == finest.keys.size()) finest.first_gaussian.clear();
-    return finest;
+    return finest.take();
   }
 
   /// A finest cell of both.
-  void mergeCell(const CellPair& pair, MapScale<D>& finest, std::vector<std::uint32_t>& group) const {
+  void mergeCell(const CellPair& pair, MapScaleBuilder<D>& finest, std::vector<std::uint32_t>& group) const {
     const std::vector<Source<D>> sources = sourcesIn(pair);
     const std::size_t parts = countIn(pair, 0);
     const std::vector<int> label = closestTogether(sources, parts);
     const std::vector<Gaussian<D>> matches = matchesOf(sources, label, parts);
-    finest.gaussians.insert(finest.gaussians.end(), matches.begin(), matches.end());
+    for (const Gaussian<D>& match : matches) finest.addGaussian(match);
     for (int part = 0; part < static_cast<int>(parts); ++part) {
       std::optional<float> in_a, in_b;
       const Source<D>* heaviest = nullptr;
@@ -231,7 +227,7 @@ class Merger {
         highest = highest ? std::max(*highest, sources[i].log_odds) : sources[i].log_odds;
       }
       group.push_back(heaviest->group);
-      if (knowsOccupancy()) finest.log_odds.push_back(combined(in_a, in_b));
+      if (knowsOccupancy()) finest.addLogOdds(combined(in_a, in_b));
     }
   }
 
@@ -269,9 +265,9 @@ class Merger {
     if (s > 1) startAnew(finer, keep, s, group);
     const Regrouping<D> from{finer, a_.grid(), s, group, areas, options_.threads};
     Regrouped<D> made = regroup<D>(from, [&](const MapScale<D>& scale, const std::vector<double>& own_areas) {
-      if (!is_refined_) return oneACell<D>(scale);
-      return ClusterCuts<D>(scale, a_.grid(), s, own_areas, options_.merge_cost, options_.threads)
-          .withExtra(extra, keep);
+      if (!is_refined_) return onePerCell<D>(scale);
+      return ScaleClusters::within(scale, a_.grid(), s, own_areas, options_.merge_cost, options_.threads, keep)
+          .cut(extra);
     });
     group.clear();
     if (s + 1 < a_.scales()) {

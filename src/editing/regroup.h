@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "gaussmap/map/gaussian_map.h"
-#include "mapping/cluster_cuts.h"
+#include "mapping/scale_clusters.h"
 
 namespace gaussmap::detail {
 
@@ -36,9 +36,5 @@ struct Regrouped {
 template <int D>
 Regrouped<D> regroup(const Regrouping<D>& from,
                      const std::function<ClusterCut(const MapScale<D>&, const std::vector<double>& areas)>& cut);
-
-/// One cluster a cell.
-template <int D>
-ClusterCut oneACell(const MapScale<D>& scale);
 
 }  // namespace gaussmap::detail

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "map/map_scale_builder.h"
+
 namespace gaussmap::detail {
 namespace {
 
@@ -12,25 +14,19 @@ template <int D>
 MapScale<D> thinScale(const GaussianMap<D>& map, int s, const std::vector<char>& keep,
                       std::vector<std::uint32_t>& places) {
   const MapScale<D>& old = map.scale(s);
-  MapScale<D> thin;
+  MapScaleBuilder<D> thin;
   std::vector<std::uint32_t> own_places(map.gaussianCount(s), 0);
-  std::uint32_t next = 0;
   for (std::size_t cell = 0; cell < old.keys.size(); ++cell) {
     if (!keep[cell]) continue;
-    thin.keys.push_back(old.keys[cell]);
-    if (!old.moments.empty()) thin.moments.push_back(old.moments[cell]);
-    if (!old.first_gaussian.empty()) thin.first_gaussian.push_back(next);
     const IndexRange range = map.gaussiansOf(cell, s);
     for (std::size_t i = range.first; i < range.last; ++i) {
-      own_places[i] = next++;
-      if (!old.gaussians.empty()) thin.gaussians.push_back(old.gaussians[i]);
-      if (!old.log_odds.empty()) thin.log_odds.push_back(old.log_odds[i]);
-      if (!old.parent.empty()) thin.parent.push_back(places[old.parent[i]]);
+      own_places[i] = static_cast<std::uint32_t>(thin.gaussians() + (i - range.first));
+      if (!old.parent.empty()) thin.addParent(places[old.parent[i]]);
     }
+    thin.copyCell(old, cell);
   }
-  if (!old.first_gaussian.empty()) thin.first_gaussian.push_back(next);
   places = std::move(own_places);
-  return thin;
+  return thin.take();
 }
 
 /// Counts the children that stay of the cells that stay.

@@ -17,7 +17,8 @@
 #include "map/areas.h"
 #include "map/coarsen.h"
 #include "map/inherit_occupancy.h"
-#include "mapping/cluster_cuts.h"
+#include "map/map_scale_builder.h"
+#include "mapping/scale_clusters.h"
 
 namespace gaussmap {
 using namespace detail;
@@ -153,15 +154,14 @@ class Mover {
     keys.reserve(all.size());
     for (const Traveller<D>& one : all) keys.push_back(one.key);
     std::vector<std::uint32_t> order = keyOrder<D>(keys, grid_.options().ratio, grid_.scales() - 1);
-    MapScale<D> finest;
+    MapScaleBuilder<D> finest;
     for (std::size_t first = 0, last = 0; first < order.size(); first = last) {
       const CellKey<D>& key = keys[order[first]];
       for (last = first + 1; last < order.size() && keys[order[last]] == key;) ++last;
       // Long codes are sorted without regard to the order of equals.
       std::sort(order.begin() + static_cast<std::ptrdiff_t>(first), order.begin() + static_cast<std::ptrdiff_t>(last));
       const Vector<D> centre = grid_.centre(key, 0);
-      finest.keys.push_back(key);
-      finest.first_gaussian.push_back(static_cast<std::uint32_t>(finest.gaussians.size()));
+      finest.addCell(key);
       std::vector<Gaussian<D>> here;
       float highest = -kMaxOccupancy;
       for (std::size_t i = first; i < last; ++i) {
@@ -171,17 +171,15 @@ class Mover {
         here.back().mean -= centre;
         if (!same_cells_) continue;
         group.push_back(one.group);
-        if (map_.hasOccupancy()) finest.log_odds.push_back(one.log_odds);
+        if (map_.hasOccupancy()) finest.addLogOdds(one.log_odds);
       }
       if (!same_cells_) {
         here = {merge(here)};
-        if (map_.hasOccupancy()) finest.log_odds.push_back(highest);
+        if (map_.hasOccupancy()) finest.addLogOdds(highest);
       }
-      finest.gaussians.insert(finest.gaussians.end(), here.begin(), here.end());
+      for (const Gaussian<D>& gaussian : here) finest.addGaussian(gaussian);
     }
-    finest.first_gaussian.push_back(static_cast<std::uint32_t>(finest.gaussians.size()));
-    if (finest.gaussians.size() == finest.keys.size()) finest.first_gaussian.clear();
-    return finest;
+    return finest.take();
   }
 
   /// `group` = the old cluster of scale 1 that each finest Gaussian comes from. Above, there are few Gaussians below a
@@ -194,9 +192,9 @@ class Mover {
     const Regrouping<D> from{finer, grid_, s, group, areas, options_.threads};
     Regrouped<D> made = regroup<D>(from, [&](const MapScale<D>& scale, const std::vector<double>& own_areas) {
       const std::size_t cells = scale.keys.size();
-      if (!is_refined || map_.gaussianCount(s) <= cells) return oneACell<D>(scale);
-      return ClusterCuts<D>(scale, grid_, s, own_areas, options_.merge_cost, options_.threads)
-          .withExtra(map_.gaussianCount(s) - cells);
+      if (!is_refined || map_.gaussianCount(s) <= cells) return onePerCell<D>(scale);
+      return ScaleClusters::within(scale, grid_, s, own_areas, options_.merge_cost, options_.threads)
+          .cut(map_.gaussianCount(s) - cells);
     });
     group = std::move(made.group);
     areas = std::move(made.areas);
@@ -209,6 +207,7 @@ class Mover {
     RefineOptions refinement;
     refinement.merge_cost = options_.merge_cost;
     refinement.threads = options_.threads;
+    MaxGaussians budget;
     bool is_refined = false;
     for (int s = 1; s < grid_.scales(); ++s) {
       MapScale<D> coarse = coarsen(scales.back(), grid_, s - 1);
@@ -217,11 +216,11 @@ class Mover {
       const int as = std::min(s, map_.scales() - 1);
       const auto cells = static_cast<double>(scales.back().keys.size());
       const double per_cell = static_cast<double>(map_.gaussianCount(as)) / static_cast<double>(map_.cellCount(as));
-      refinement.max_gaussians[s] = static_cast<std::size_t>(cells * per_cell);
-      is_refined |= refinement.max_gaussians[s] > scales.back().keys.size();
+      budget.by_scale[s] = static_cast<std::size_t>(cells * per_cell);
+      is_refined |= budget.by_scale[s] > scales.back().keys.size();
     }
     GaussianMap<D> map(grid_.options(), std::move(scales));
-    return is_refined ? refine<D>(std::move(map), refinement) : map;
+    return is_refined ? refine<D>(std::move(map), budget, refinement).map : map;
   }
 
   const GaussianMap<D>& map_;

@@ -5,14 +5,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "map/map_scale_builder.h"
+
 namespace gaussmap::detail {
-namespace {
-
-std::uint32_t index32(std::size_t index) {
-  return static_cast<std::uint32_t>(index);
-}
-
-}  // namespace
 
 template <int D>
 Gaussian<D> localGaussian(const MapScale<D>& cells, const Grid<D>& grid, int scale, std::size_t index) {
@@ -47,22 +42,21 @@ MapScale<D> coarsen(MapScale<D>& finer, const Grid<D>& grid, int finer_scale) {
   const std::size_t finer_cells = finer.keys.size();
   if (finer.gaussianCount() >= std::numeric_limits<std::uint32_t>::max())
     throw std::length_error("coarsen: scale " + std::to_string(finer_scale) + " has 2^32 Gaussians or more");
-  MapScale<D> coarser;
+  MapScaleBuilder<D> coarser;
   finer.parent.resize(finer.gaussianCount());
   std::vector<Gaussian<D>> children;
   for (std::size_t first = 0, last = 0; first < finer_cells; first = last) {
     const CellKey<D> key = grid.ancestor(finer.keys[first], finer_scale, finer_scale + 1);
     for (last = first + 1; last < finer_cells && grid.isParent(key, finer.keys[last]);) ++last;
-    const std::uint32_t cell = index32(coarser.keys.size());
+    const auto cell = static_cast<std::uint32_t>(coarser.cells());
     for (std::size_t i = gaussiansOf(finer, first).first; i < gaussiansOf(finer, last - 1).last; ++i)
       finer.parent[i] = cell;
     gatherUnder(finer, grid, finer_scale, {first, last}, children);
-    coarser.keys.push_back(key);
-    coarser.first_child.push_back(index32(first));
-    coarser.gaussians.push_back(merge(children));
+    coarser.addCell(key);
+    coarser.addFirstChild(first);
+    coarser.addGaussian(merge(children));
   }
-  coarser.first_child.push_back(index32(finer_cells));
-  return coarser;
+  return coarser.take(finer_cells);
 }
 
 #define GAUSSMAP_INSTANTIATE(D)                                                                                   \

@@ -105,6 +105,15 @@ GaussianMap<D>::GaussianMap(const MapOptions& options, std::vector<MapScale<D>> 
 }
 
 template <int D>
+std::vector<MapScale<D>> GaussianMap<D>::takeScales() && {
+  std::vector<MapScale<D>> scales(scales_.size());
+  scales.swap(scales_);
+  weights_.assign(scales.size(), 0.0);
+  compressed_ = false;
+  return scales;
+}
+
+template <int D>
 std::optional<std::size_t> GaussianMap<D>::find(const CellKey<D>& key, int s) const {
   IndexRange range{0, cellCount(scales() - 1)};
   for (int level = scales() - 1;; --level) {

@@ -1,83 +1,58 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gaussmap/mapping/refine.h"
 
-#include <cmath>
 #include <stdexcept>
-#include <string>
 #include <utility>
+#include <variant>
 
 #include "core/check.h"
-#include "map/areas.h"
-#include "map/inherit_occupancy.h"
-#include "refine_scale.h"
+#include "mapping/budget.h"
+#include "mapping/measured_refinement.h"
+#include "mapping/refine_insert.h"
+#include "mapping/refine_scales.h"
 
 namespace gaussmap {
 using namespace detail;
 
-namespace {
-
-void checkOptions(const RefineOptions& options, int scales) {
-  require(std::isfinite(options.budget) && options.budget >= 1.0, "budget", options.budget,
-          "must be at least 1 Gaussian per cell");
-  for (const auto& limit : options.max_gaussians)
-    require(limit.first >= 1 && limit.first < scales, "max_gaussians of scale", limit.first,
-            "must be of a coarse scale, 1 to " + std::to_string(scales - 1));
-  require(options.queue >= 0, "queue", options.queue, "must be at least 1 (0 = automatic)");
-  require(options.max_swaps >= 0, "max_swaps", options.max_swaps, "must not be negative");
-  require(options.threads >= 0, "threads", options.threads, "must be at least 1 (0 = all)");
-}
-
-/// Makes every coarse scale anew from the finer one and lets refineScale(scale, areas) refine it.
-template <int D, typename RefineScale>
-GaussianMap<D> refineScales(const GaussianMap<D>& map, const RefineScale& refineScale) {
-  if (map.isCompressed())
-    throw std::invalid_argument(
-        "the map is compressed: its finest scale is incomplete, so that the coarse ones cannot be "
-        "made anew; refine first, then compress");
-  std::vector<MapScale<D>> scales = {map.scale(0)};
-  std::vector<double> areas = finestAreas(scales.front());
-  for (int finer_scale = 0; finer_scale + 1 < map.scales(); ++finer_scale) {
-    MapScale<D>& finer = scales.back();
-    MapScale<D> coarse = coarsen(finer, map.grid(), finer_scale);
-    CoarseScale<D> scale{finer, coarse, map.grid(), finer_scale};
-    refineScale(scale, areas);
-    inheritOccupancy<D>(finer, coarse);
-    areas = coarserAreas(finer, areas, coarse.gaussianCount());
-    scales.push_back(std::move(coarse));
-  }
-  return GaussianMap<D>(map.options(), std::move(scales));
-}
-
-}  // namespace
-
-template <int D>
-GaussianMap<D> detail::refineByChoice(GaussianMap<D> map, const RefineOptions& options,
-                                      const std::function<std::size_t(const ScaleCuts<D>&)>& choose) {
-  checkOptions(options, map.scales());
-  if (map.empty() || map.scales() == 1) return map;
-  return refineScales<D>(map, [&](CoarseScale<D>& scale, const std::vector<double>& areas) {
-    const ScaleCuts<D> cuts(scale, areas, options);
-    const std::size_t extra = choose(cuts);
-    if (extra > 0) scale.replaceGaussians(cuts.clusters(extra));
-  });
+RefineOptions RefineOptions::yguel2009() {
+  RefineOptions options;
+  options.method = RefineMethod::Insert;
+  options.queue = 4;
+  options.seed_rule = ClusterSeed::Datum;
+  return options;
 }
 
 template <int D>
-GaussianMap<D> refine(GaussianMap<D> map, const RefineOptions& options) {
-  checkOptions(options, map.scales());
-  if (map.empty() || map.scales() == 1) return map;
-  return refineScales<D>(map, [&](CoarseScale<D>& scale, const std::vector<double>& areas) {
-    const std::size_t extra = scale.extraAllowed(options);
+GaussianMap<D> detail::refineByCount(GaussianMap<D> map, const Budget& budget, const RefineOptions& options) {
+  return refineScales<D>(std::move(map), [&](const ScalePair<D>& pair, const std::vector<double>& areas) {
+    const std::size_t extra = extraGaussians(budget, pair.finer_scale + 1, pair.cells(), pair.finer.gaussianCount());
     if (options.method == RefineMethod::Insert)
-      refineByInsertion(scale, options);
+      refineByInsertion(pair, extra, options);
     else if (extra > 0)
-      scale.replaceGaussians(ScaleCuts<D>(scale, areas, options).clusters(extra));
+      setClusters(pair, ScaleClusters::under(pair, areas, options.merge_cost, options.threads).cut(extra),
+                  options.threads);
   });
 }
 
-template GaussianMap<2> refine<2>(GaussianMap<2>, const RefineOptions&);
-template GaussianMap<3> refine<3>(GaussianMap<3>, const RefineOptions&);
-template GaussianMap<3> detail::refineByChoice<3>(GaussianMap<3>, const RefineOptions&,
-                                                  const std::function<std::size_t(const ScaleCuts<3>&)>&);
+template <int D>
+RefineResult<D> refine(GaussianMap<D> map, const Budget& budget, const RefineOptions& options) {
+  checkRefinement(budget, options, map.scales());
+  if constexpr (D == 3) {
+    if (const auto* bytes = std::get_if<MaxBytes>(&budget)) return refineToBytes(std::move(map), *bytes, options);
+    if (options.curves || std::holds_alternative<MaxError>(budget))
+      return refineMeasured(std::move(map), budget, options);
+  } else {
+    refuseMeasuredBudget(budget);
+    if (options.curves) throw std::invalid_argument("curves: errors are measured in maps of 3 dimensions only");
+  }
+  return {refineByCount(std::move(map), budget, options), {}, {}};
+}
+
+#define GAUSSMAP_INSTANTIATE(D)                                                                          \
+  template GaussianMap<D> detail::refineByCount<D>(GaussianMap<D>, const Budget&, const RefineOptions&); \
+  template RefineResult<D> refine<D>(GaussianMap<D>, const Budget&, const RefineOptions&);
+GAUSSMAP_INSTANTIATE(2)
+GAUSSMAP_INSTANTIATE(3)
+#undef GAUSSMAP_INSTANTIATE
 
 }  // namespace gaussmap

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <queue>
+#include "mapping/refine_insert.h"
 
-#include "clustering/small_cholesky.h"
+#include <queue>
+#include <utility>
+
 #include "core/parallel.h"
 #include "gaussmap/clustering/kl_kmeans.h"
 #include "gaussmap/core/random.h"
 #include "mapping/cell_error.h"
-#include "refine_scale.h"
 
 namespace gaussmap::detail {
 namespace {
@@ -20,18 +21,24 @@ struct QueuedCell {
   }
 };
 
+/// The clusters of a refined cell, and which of them each finer Gaussian under it belongs to.
+template <int D>
+struct CellClusters {
+  std::vector<Gaussian<D>> references;  // empty: still the one Gaussian of coarsen()
+  std::vector<int> labels;
+};
+
 template <int D>
 class InsertionRefiner {
  public:
-  InsertionRefiner(CoarseScale<D>& scale, const RefineOptions& options)
+  InsertionRefiner(const ScalePair<D>& scale, const RefineOptions& options)
       : scale_(scale), options_(options), cells_(scale.cells()) {}
 
-  void run() {
-    std::size_t left = scale_.extraAllowed(options_);
+  void run(std::size_t left) {
     if (left == 0) return;
     fillQueue();
     while (left > 0 && !queue_.empty()) left -= refineWorstCells(std::min(left, cellsAtATime()));
-    scale_.replaceGaussians(cells_);
+    setClusters(scale_, cut(), options_.threads);
   }
 
  private:
@@ -60,12 +67,17 @@ class InsertionRefiner {
 
   std::size_t clusterCount(std::size_t cell) const { return std::max<std::size_t>(1, cells_[cell].references.size()); }
 
-  /// What the queue is ordered by.
-  double errorOf(const std::vector<Gaussian<D>>& references, const std::vector<Gaussian<D>>& data) const {
-    if (options_.cell_choice == CellChoice::Error) return cellError(references, data);
-    double volume = 0.0;
-    for (const Gaussian<D>& w : references) volume += SmallCholesky<D>(w.cov).root_determinant;
-    return volume;
+  /// The labels of all cells as one cut; every reference is the moment match of its members.
+  ClusterCut cut() const {
+    ClusterCut cut;
+    cut.first.push_back(0);
+    for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
+      const std::uint32_t first = cut.first.back();
+      if (cells_[cell].labels.empty()) cut.cluster.insert(cut.cluster.end(), scale_.gaussiansUnder(cell).size(), first);
+      for (const int label : cells_[cell].labels) cut.cluster.push_back(first + static_cast<std::uint32_t>(label));
+      cut.first.push_back(first + static_cast<std::uint32_t>(clusterCount(cell)));
+    }
+    return cut;
   }
 
   void enqueue(std::size_t cell, double error) {
@@ -76,7 +88,7 @@ class InsertionRefiner {
     std::vector<double> errors(cells_.size());
     parallelFor(cells_.size(), options_.threads, 64, [&](std::size_t cell) {
       if (scale_.gaussiansUnder(cell).size() < 2) return;
-      errors[cell] = errorOf({scale_.coarse.gaussians[cell]}, scale_.dataUnder(cell));
+      errors[cell] = cellError<D>({scale_.coarse.gaussians[cell]}, scale_.dataUnder(cell));
     });
     for (std::size_t cell = 0; cell < cells_.size(); ++cell) enqueue(cell, errors[cell]);
   }
@@ -104,10 +116,9 @@ class InsertionRefiner {
     KLKMeansOptions options;
     options.max_swaps = options_.max_swaps;
     options.seed_rule = options_.seed_rule;
-    options.worst_rule = options_.worst_rule;
     options.seed = seedOf(scale_.coarse.keys[cell], current.size());
     insertion.clustering = insertCluster(data, current, options);
-    insertion.error = errorOf(insertion.clustering.references, data);
+    insertion.error = cellError(insertion.clustering.references, data);
   }
 
   /// Own numbers for every insertion, whoever makes it and when.
@@ -117,7 +128,7 @@ class InsertionRefiner {
     return Random::forPart(options_.seed, part ^ clusters).bits();
   }
 
-  CoarseScale<D>& scale_;
+  const ScalePair<D>& scale_;
   const RefineOptions& options_;
   std::vector<CellClusters<D>> cells_;
   std::priority_queue<QueuedCell> queue_;
@@ -127,11 +138,11 @@ class InsertionRefiner {
 }  // namespace
 
 template <int D>
-void refineByInsertion(CoarseScale<D>& scale, const RefineOptions& options) {
-  InsertionRefiner<D>(scale, options).run();
+void refineByInsertion(const ScalePair<D>& scale, std::size_t extra, const RefineOptions& options) {
+  InsertionRefiner<D>(scale, options).run(extra);
 }
 
-template void refineByInsertion<2>(CoarseScale<2>&, const RefineOptions&);
-template void refineByInsertion<3>(CoarseScale<3>&, const RefineOptions&);
+template void refineByInsertion<2>(const ScalePair<2>&, std::size_t, const RefineOptions&);
+template void refineByInsertion<3>(const ScalePair<3>&, std::size_t, const RefineOptions&);
 
 }  // namespace gaussmap::detail

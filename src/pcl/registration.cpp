@@ -18,9 +18,8 @@ constexpr double kRigid = 1e-3;  // what floats and text files make of a rotatio
 GaussianMapOctree buildTargetMap(const std::vector<Eigen::Vector3d>& points,
                                  const GaussianMapRegistrationOptions& options) {
   RefineOptions refinement;
-  refinement.budget = options.budget;
   refinement.threads = options.registration.threads;
-  return refine<3>(build<3>(points, options.map), refinement);
+  return refine<3>(build<3>(points, options.map), PerCell{options.budget}, refinement).map;
 }
 
 Pose poseOfMatrix(const Eigen::Matrix4d& matrix) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Budgets and error curves through the real program.
 #include "apps/app_fixture.h"
-#include "gaussmap/io/gmap/map_file.h"
+#include "gaussmap/io/gmap/map_history.h"
+#include "gaussmap/version.h"
 #include "io/gmap/map_equality.h"
 
 namespace gaussmap::test {
@@ -76,6 +77,28 @@ TEST_F(BudgetApps, TakeOneBudgetOnly) {
   }
 }
 
+/// What the commands write comes from the library.
+TEST_F(BudgetApps, WriteTheBytesThatACallOfTheLibraryWrites) {
+  const auto sameAs = [&](const std::string& name, const Budget& budget, bool curves, const std::string& details) {
+    MapMetadata metadata = loadMetadata(scene("one.gmap"));
+    RefineOptions options;
+    if (curves) options.curves.emplace();
+    recordStep(metadata, refineStep(budget, options, details));
+    const auto* bytes = std::get_if<MaxBytes>(&budget);
+    const Budget measured = bytes != nullptr ? Budget(maxFileBytes(bytes->bytes, metadata)) : budget;
+    saveMap(refine(loadMap<3>(scene("one.gmap")), measured, options), own("library.gmap"), metadata, {true});
+    return contentsOf(own("library.gmap")) == contentsOf(own(name));
+  };
+  const std::string command = R"({"command": "refine", "version": ")" GAUSSMAP_VERSION R"("})";
+  ASSERT_EQ(refineWith("budget.gmap", {"--budget", "2"}).code, 0);
+  EXPECT_TRUE(sameAs("budget.gmap", PerCell{2.0}, true, command));
+  ASSERT_EQ(refineWith("error.gmap", {"--max-error", "0.8"}).code, 0);
+  EXPECT_TRUE(sameAs("error.gmap", MaxError{0.8, {}}, true, command));
+  const std::uintmax_t most = infoOf(scene("one.gmap"))["bytes"].get<std::uintmax_t>() + 30000;
+  ASSERT_EQ(refineWith("bytes.gmap", {"--max-bytes", std::to_string(most)}).code, 0);
+  EXPECT_TRUE(sameAs("bytes.gmap", MaxBytes{most, {}}, true, command));
+}
+
 TEST_F(BudgetApps, KeepTheErrorCurvesAndDrawThem) {
   ASSERT_EQ(refineWith("a.gmap", {"--budget", "2"}).code, 0);
   const Json curves = infoOf(own("a.gmap"))["metadata"]["error_curves"];
@@ -136,25 +159,13 @@ TEST_F(BudgetApps, MergeByTheCostAskedFor) {
     return loadMap<3>(own(name));
   };
   const GaussianMapOctree usual = refined("usual.gmap", {}), volume = refined("volume.gmap", {"--cost", "volume"}),
-                          runnalls = refined("runnalls.gmap", {"--cost", "runnalls"}),
-                          area = refined("area.gmap", {"--cost", "volume-area"});
+                          runnalls = refined("runnalls.gmap", {"--cost", "runnalls"});
   expectSameMap<3>(volume, usual);
   EXPECT_FALSE(sameMap<3>(runnalls, usual));
-  EXPECT_FALSE(sameMap<3>(area, usual));
-  EXPECT_FALSE(sameMap<3>(area, runnalls));
   EXPECT_EQ(runnalls.gaussianCount(1), usual.gaussianCount(1));
   EXPECT_EQ(infoOf(own("runnalls.gmap"))["metadata"]["history"][1]["cost"], "runnalls");
   succeed({"pcd2map", scene("scans"), "-o", own("direct.gmap"), "--cost", "runnalls"});
   expectSameMap<3>(loadMap<3>(own("direct.gmap")), runnalls);
-}
-
-TEST_F(BudgetApps, InsertIntoTheCellsAskedFor) {
-  for (const std::string cells : {"error", "volume"})
-    ASSERT_EQ(refineWith(cells, {"--method", "insert", "--cells", cells, "--budget", "2"}).code, 0);
-  ASSERT_EQ(refineWith("usual", {"--method", "insert", "--budget", "2"}).code, 0);
-  expectSameMap<3>(loadMap<3>(own("error")), loadMap<3>(own("usual")));
-  EXPECT_FALSE(sameMap<3>(loadMap<3>(own("volume")), loadMap<3>(own("usual"))));
-  EXPECT_EQ(infoOf(own("volume"))["metadata"]["history"][1]["cells"], "volume");
 }
 
 TEST_F(BudgetApps, RefuseOptionsOfTheOtherMethod) {
@@ -165,10 +176,7 @@ TEST_F(BudgetApps, RefuseOptionsOfTheOtherMethod) {
       expectUsageError(word, options);
     };
     refuse("--cost: for --method agglomerate only", {"--method", "insert", "--cost", "volume"});
-    refuse("--cells: for --method insert only", {"--cells", "error"});
-    refuse("--cells: for --method insert only", {"--method", "agglomerate", "--cells", "volume"});
     refuse("--cost", {"--cost", "area"});
-    refuse("--cells", {"--method", "insert", "--cells", "weight"});
   }
 }
 

@@ -114,10 +114,8 @@ void compareSizes(const fs::path& folder) {
     scans.push_back(PcdScans({sources.back()}).read(0));
   }
   const MeshDistance truth(readPly(folder / "truth.ply"));
-  RefineOptions refining;
-  refining.budget = 2.0;
   const GaussianMap<3> map =
-      refine<3>(build<3>(accumulateScans(PcdScans(sources), {}).moments, MapOptions()), refining);
+      refine<3>(build<3>(accumulateScans(PcdScans(sources), {}).moments, MapOptions()), PerCell{2.0}).map;
 
   std::string work = (fs::temp_directory_path() / "gaussmap-finished-XXXXXX").string();
   if (::mkdtemp(work.data()) == nullptr) throw std::runtime_error("no temporary directory");

@@ -99,7 +99,6 @@ void checkScalar(const std::vector<CellData>& cells) {
 
 RefineOptions oneThread() {
   RefineOptions options;
-  options.budget = kBudget;
   options.threads = 1;
   return options;
 }
@@ -134,9 +133,11 @@ void run(int scans, int runs, const std::string& json) {
   const std::vector<Vector<3>> points = simulatedDrive(makeSimulation(WorldName::Street, street), 1).points;
   const GaussianMap<3> one = build<3>(points, {0.1, 10, 3});
   const GaussianMap<3> middle = quarterMillion(points, one.cellCount(0));
-  RefineOptions without_coarsest = oneThread();
-  without_coarsest.max_gaussians[2] = one.cellCount(2);
-  const std::vector<CellData> coarsest_data = dataOf(refine<3>(one, oneThread()), 2), middle_data = dataOf(middle, 1);
+  const PerCell budget{kBudget};
+  const MaxGaussians without_coarsest{
+      {{1, static_cast<std::size_t>(kBudget * static_cast<double>(one.cellCount(1)))}, {2, one.cellCount(2)}}};
+  const std::vector<CellData> coarsest_data = dataOf(refine<3>(one, budget, oneThread()).map, 2),
+                              middle_data = dataOf(middle, 1);
 
   checkScalar(coarsest_data);
   checkScalar(middle_data);
@@ -144,9 +145,9 @@ void run(int scans, int runs, const std::string& json) {
   Times coarsest_times, middle_times;
   double both = std::numeric_limits<double>::infinity(), below = both;
   for (int i = 0; i < runs; ++i) {
-    both = std::min(both, seconds([&] { refine<3>(one, oneThread()); }));
-    below = std::min(below, seconds([&] { refine<3>(one, without_coarsest); }));
-    middle_times.whole = std::min(middle_times.whole, seconds([&] { refine<3>(middle, oneThread()); }));
+    both = std::min(both, seconds([&] { refine<3>(one, budget, oneThread()); }));
+    below = std::min(below, seconds([&] { refine<3>(one, without_coarsest, oneThread()); }));
+    middle_times.whole = std::min(middle_times.whole, seconds([&] { refine<3>(middle, budget, oneThread()); }));
     timeClustering(coarsest_data, coarsest_times);
     timeClustering(middle_data, middle_times);
   }

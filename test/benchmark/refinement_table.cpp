@@ -50,16 +50,9 @@ class Meter {
   std::optional<MeshDistance> mesh_;
 };
 
-RefineOptions agglomerative(double budget) {
-  RefineOptions options;
-  options.budget = budget;
-  return options;
-}
-
 /// Algorithm 2 and its queue.
-RefineOptions paper(double budget, ClusterSeed seed_rule, std::uint64_t seed) {
+RefineOptions paper(ClusterSeed seed_rule, std::uint64_t seed) {
   RefineOptions options;
-  options.budget = budget;
   options.method = RefineMethod::Insert;
   options.seed_rule = seed_rule;
   options.seed = seed;
@@ -75,18 +68,18 @@ void addSeed(Table& table, std::uint64_t seed) {
   table.row(1.0, kOnePerCell).runs.push_back(meter.measure(one, coarsest));
   for (const double budget : table.data->budgets) {
     const auto measure = [&](const char* method, const RefineOptions& with) {
-      const Run run = meter.measure(refine<3>(one, with), coarsest);
+      const Run run = meter.measure(refine<3>(one, PerCell{budget}, with).map, coarsest);
       table.row(budget, method).runs.push_back(run);
       return run.gaussians;
     };
-    measure(kPaper, paper(budget, ClusterSeed::Datum, seed));
-    measure(kParentSeed, paper(budget, ClusterSeed::ParentCovariance, seed));
-    const std::size_t most = measure(kAgglomerative, agglomerative(budget));
+    measure(kPaper, paper(ClusterSeed::Datum, seed));
+    measure(kParentSeed, paper(ClusterSeed::ParentCovariance, seed));
+    const std::size_t most = measure(kAgglomerative, RefineOptions());
     const GaussianMap<3> uniform = uniformGrid(data.points, most, one.grid().side(coarsest), options.resolution);
     table.row(budget, kUniformGrid).runs.push_back(meter.measure(uniform, 1));
   }
   if (!table.data->simulated) return;
-  table.middle.runs.push_back(meter.measure(refine<3>(one, agglomerative(table.middle.budget)), 1));
+  table.middle.runs.push_back(meter.measure(refine<3>(one, PerCell{table.middle.budget}).map, 1));
   // At these scales the least number of samples decides, not the volume: with fewer for the many finest Gaussians the
   // figures are the same and take a tenth of the time.
   table.finest.runs.push_back(meter.measure(one, 0, 3));

@@ -15,7 +15,7 @@
 namespace gaussmap {
 namespace {
 
-constexpr MergeCost kCosts[] = {MergeCost::Volume, MergeCost::Runnalls, MergeCost::VolumeArea};
+constexpr MergeCost kCosts[] = {MergeCost::Volume, MergeCost::Runnalls};
 
 AgglomerateOptions with(MergeCost cost) {
   AgglomerateOptions options;
@@ -108,12 +108,11 @@ TEST(Agglomerate, MergesAsBruteForceDoesInThePlane) {
 }
 
 TEST(Agglomerate, CostsWhatIsKnownOnPaper) {
-  // Unit spheres at -1 and 1: variance 1 + 1 along x. sqrt(2) - 2; times sqrt(area 2); 2 ln 2 / 2.
+  // Unit spheres at -1 and 1: variance 1 + 1 along x. sqrt(2) - 2; 2 ln 2 / 2.
   const auto costOf = [](MergeCost cost) {
     return agglomerate<3>({sphere<3>(-1, 1), sphere<3>(1, 1)}, ones(2), with(cost)).merges.at(0).cost;
   };
   EXPECT_NEAR(costOf(MergeCost::Volume), std::sqrt(2.0) - 2.0, 1e-14);
-  EXPECT_NEAR(costOf(MergeCost::VolumeArea), std::sqrt(2.0) * (std::sqrt(2.0) - 2.0), 1e-14);
   EXPECT_NEAR(costOf(MergeCost::Runnalls), std::log(2.0), 1e-14);
   // Areas 1 and 3: mean 0.5, variance along x 1 + 1 * 3 / 16 * 4. The weights, 5 and 15, matter to Runnalls alone.
   const std::vector<Gaussian<2>> uneven = {sphere<2>(-1, 1, 5), sphere<2>(1, 1, 15)};
@@ -280,10 +279,8 @@ TEST(Agglomerate, EndsWithFiniteCostsWhereDeterminantsOverflow) {
 TEST(Agglomerate, FindsTwoWallsAndAPole) {
   Random random(9);
   const std::vector<Gaussian<3>> patches = wallsAndPole(random);
-  for (const MergeCost cost : {MergeCost::Volume, MergeCost::VolumeArea}) {
-    const std::vector<int> found = labels(agglomerate(patches, ones(patches.size()), with(cost)), 3);
-    for (std::size_t j = 0; j < patches.size(); ++j) EXPECT_EQ(found[j], static_cast<int>(j / kPatches));
-  }
+  const std::vector<int> found = labels(agglomerate(patches, ones(patches.size())), 3);
+  for (std::size_t j = 0; j < patches.size(); ++j) EXPECT_EQ(found[j], static_cast<int>(j / kPatches));
 }
 
 TEST(Agglomerate, NamesWhatItRefuses) {

@@ -92,7 +92,7 @@ void expectBruteForce(MergeCost cost) {
 }
 
 TEST(MergeNeighbours, MergesAsBruteForceDoes) {
-  for (const MergeCost cost : {MergeCost::Volume, MergeCost::Runnalls, MergeCost::VolumeArea}) {
+  for (const MergeCost cost : {MergeCost::Volume, MergeCost::Runnalls}) {
     expectBruteForce<2>(cost);
     expectBruteForce<3>(cost);
   }
@@ -105,7 +105,7 @@ TEST(Agglomerate, BreaksTiesAsBruteForceDoes) {  // a lattice of equal Gaussians
     for (Gaussian<2>& datum : data)
       datum.mean = {4.0 * static_cast<double>(random.below(4)), 4.0 * static_cast<double>(random.below(4))};
     const std::vector<double> areas(data.size(), 1.0);
-    for (const MergeCost cost : {MergeCost::Volume, MergeCost::Runnalls, MergeCost::VolumeArea}) {
+    for (const MergeCost cost : {MergeCost::Volume, MergeCost::Runnalls}) {
       AgglomerateOptions options;
       options.cost = cost;
       // Everyone is a neighbour, whatever is looked for anew: every pair is a candidate all the time.

@@ -205,16 +205,14 @@ TEST(NumericalProperties, HoldForAMillionCells) {
 TEST(NumericalProperties, HoldForMapsThatAreRefinedMovedAndThinned) {
   const std::size_t points = test::kSanitized ? 5000 : 50000;
   Random random(5);
-  GaussianMapOctree map = refine<3>(build<3>(test::randomCloud<3>(points, 6), {0.05, 5, 3, 1e-4}));
+  GaussianMapOctree map = refine<3>(build<3>(test::randomCloud<3>(points, 6), {0.05, 5, 3, 1e-4})).map;
   for (int round = 0; round < 4; ++round) {
     RigidMotion<3> motion;
     motion.rotation = randomRotation<3>(random);
     motion.translation = {100.0 * random.normal(), 1e4 * random.normal(), 1e6 * random.normal()};
     if (round % 2 == 1) motion.covariance = 1e-6 * PoseCovariance<3>::Identity();
     map = transformMap<3>(map, motion);
-    SimplifyOptions thinner;
-    thinner.budget = 2.0;
-    if (round == 2) map = simplify<3>(map, thinner);
+    if (round == 2) map = simplify<3>(map, PerCell{2.0}).map;
     for (int s = 0; s < map.scales(); ++s) {
       std::int64_t indefinite = 0;
       for (std::size_t i = 0; i < map.gaussianCount(s); ++i)

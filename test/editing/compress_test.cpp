@@ -102,14 +102,14 @@ TEST(Compress, WithSeveralGaussiansACellLetsTheCornerGo) {
       points.emplace_back(0.0125 + 0.025 * i, 0.05, 0.0125 + 0.025 * j);
       points.emplace_back(0.05, 0.0125 + 0.025 * i, 0.0125 + 0.025 * j);
     }
-  const GaussianMapOctree map = refine<3>(build<3>(points, {0.1, 10, 2, 0.0}));
+  const GaussianMapOctree map = refine<3>(build<3>(points, {0.1, 10, 2, 0.0})).map;
   EXPECT_EQ(compress(map, 0.15).cellCount(0), 0u);
 }
 
 TEST(Compress, DeletesNothingForATinyError) {
   for (const double max_error : {1e-9, 1e-3}) {
     Random random(1);
-    const GaussianMapOctree map = refine<3>(build<3>(roomPoints(random, 20000), kDecades));
+    const GaussianMapOctree map = refine<3>(build<3>(roomPoints(random, 20000), kDecades)).map;
     const GaussianMapOctree same = compress(map, max_error);
     expectSameMap<3>(same, map);
     EXPECT_FALSE(same.isCompressed());
@@ -119,7 +119,7 @@ TEST(Compress, DeletesNothingForATinyError) {
 
 TEST(Compress, LeavesTheCoarsestScaleForAHugeError) {
   Random random(2);
-  const GaussianMapOctree map = refine<3>(build<3>(roomPoints(random, 20000), kDecades));
+  const GaussianMapOctree map = refine<3>(build<3>(roomPoints(random, 20000), kDecades)).map;
   const GaussianMapOctree small = compress(map, 100.0);
   EXPECT_EQ(small.cellCount(0) + small.cellCount(1), 0u);
   EXPECT_EQ(small.gaussianCount(2), map.gaussianCount(2));
@@ -189,7 +189,7 @@ std::vector<bool> goodCells(const GaussianMapOctree& shown, const GaussianMapOct
 class CompressProperty : public testing::TestWithParam<std::uint64_t> {
  protected:
   CompressProperty() : whole_(build<3>(randomCloud<3>(1500, 90 + GetParam()), {0.1, 2 + int(GetParam() % 4), 3, 0.0})) {
-    if (GetParam() % 2 == 1) whole_ = refine<3>(whole_);
+    if (GetParam() % 2 == 1) whole_ = refine<3>(whole_).map;
     options_.samples = GetParam() % 3 == 0 ? 100 : 30;
     options_.seed = GetParam();
   }

@@ -8,7 +8,7 @@
 
 #include "editing/thinned_map.h"
 #include "gaussmap/editing/transform_map.h"
-#include "gaussmap/io/gmap/map_file.h"
+#include "gaussmap/io/gmap/map_history.h"
 #include "gaussmap/map/queries.h"
 #include "io/gmap/map_equality.h"
 #include "map/inherit_occupancy.h"
@@ -20,16 +20,10 @@ using namespace detail;
 
 namespace {
 
-SimplifyOptions withBudget(double budget) {
-  SimplifyOptions options;
-  options.budget = budget;
-  return options;
-}
-
 TEST(Simplify, LeavesAsManyGaussiansAsAskedFor) {
   const GaussianMap<3> map = refinedMap<3>(randomCloud<3>(9000, 1), smallGrid<3>());
   for (const double budget : {2.5, 1.7, 1.0}) {
-    const GaussianMap<3> simple = simplify<3>(map, withBudget(budget));
+    const GaussianMap<3> simple = simplify<3>(map, PerCell{budget}).map;
     EXPECT_TRUE(sameFinest<3>(simple, map));
     EXPECT_TRUE(simple.canGrow());
     for (int s = 1; s < 3; ++s) {
@@ -42,7 +36,7 @@ TEST(Simplify, LeavesAsManyGaussiansAsAskedFor) {
 
 TEST(Simplify, ToOneGaussianACellIsTheUnrefinedMap) {
   const std::vector<Vector<3>> points = randomCloud<3>(9000, 2);
-  const GaussianMap<3> simple = simplify<3>(refinedMap<3>(points, smallGrid<3>()), withBudget(1.0));
+  const GaussianMap<3> simple = simplify<3>(refinedMap<3>(points, smallGrid<3>()), PerCell{1.0}).map;
   const GaussianMap<3> unrefined = build<3>(points, smallGrid<3>());
   for (int s = 0; s < 3; ++s) {
     ASSERT_EQ(simple.gaussianCount(s), unrefined.gaussianCount(s));
@@ -53,21 +47,18 @@ TEST(Simplify, ToOneGaussianACellIsTheUnrefinedMap) {
 
 TEST(Simplify, LeavesAMapThatIsSmallEnoughAsItIs) {
   const GaussianMap<3> map = refinedMap<3>(randomCloud<3>(3000, 2), smallGrid<3>());
-  expectSameMap<3>(simplify<3>(map, withBudget(100.0)), map);
-  expectSameMap<3>(simplify<3>(map, {}), map);
-  EXPECT_TRUE(simplify<3>(GaussianMap<3>(smallGrid<3>()), withBudget(1.0)).empty());
+  expectSameMap<3>(simplify<3>(map, PerCell{100.0}).map, map);
+  expectSameMap<3>(simplify<3>(map, MaxGaussians{}).map, map);
+  EXPECT_TRUE(simplify<3>(GaussianMap<3>(smallGrid<3>()), PerCell{1.0}).map.empty());
 }
 
 TEST(Simplify, MergesTheScaleThatWasNamedOnly) {
   const GaussianMap<3> map = refinedMap<3>(randomCloud<3>(9000, 3), smallGrid<3>());
-  SimplifyOptions options;
-  options.max_gaussians[1] = map.cellCount(1) + 7;
-  const GaussianMap<3> simple = simplify<3>(map, options);
+  const GaussianMap<3> simple = simplify<3>(map, MaxGaussians{{{1, map.cellCount(1) + 7}}}).map;
   EXPECT_EQ(simple.gaussianCount(1), map.cellCount(1) + 7);
   EXPECT_LE(simple.gaussianCount(2), map.gaussianCount(2));  // a cluster goes if all of its own went to others
   expectMomentMatches<3>(simple);
-  options.max_gaussians = {{2, map.cellCount(2)}};
-  const GaussianMap<3> coarse = simplify<3>(map, options);
+  const GaussianMap<3> coarse = simplify<3>(map, MaxGaussians{{{2, map.cellCount(2)}}}).map;
   EXPECT_EQ(coarse.gaussianCount(1), map.gaussianCount(1));
   EXPECT_EQ(coarse.gaussianCount(2), map.cellCount(2));
   expectMomentMatches<3>(coarse);
@@ -79,9 +70,7 @@ TEST(Simplify, MergesTheTwoThatAreClosest) {
   const MapOptions grid = smallGrid<2>(8, 2);
   const GaussianMap<2> map = refinedMap<2>(points, grid);
   ASSERT_EQ(map.gaussianCount(1), 3u);
-  SimplifyOptions options;
-  options.max_gaussians[1] = 2;
-  const GaussianMap<2> simple = simplify<2>(map, options);
+  const GaussianMap<2> simple = simplify<2>(map, MaxGaussians{{{1, 2}}}).map;
   ASSERT_EQ(simple.gaussianCount(1), 2u);
   EXPECT_EQ(simple.parentOf(0, 0), simple.parentOf(1, 0));
   EXPECT_NE(simple.parentOf(0, 0), simple.parentOf(2, 0));
@@ -90,7 +79,7 @@ TEST(Simplify, MergesTheTwoThatAreClosest) {
 TEST(Simplify, NeedsNoFinerScale) {
   const GaussianMap<3> map = thinned<3>(refinedMap<3>(randomCloud<3>(9000, 4), smallGrid<3>()));
   ASSERT_TRUE(map.isCompressed());
-  const GaussianMap<3> simple = simplify<3>(map, withBudget(1.0));
+  const GaussianMap<3> simple = simplify<3>(map, PerCell{1.0}).map;
   EXPECT_TRUE(simple.isCompressed());
   double weight = 0.0, old_weight = 0.0;
   for (const GaussianId& leaf : leaves(simple)) weight += simple.gaussian(leaf.index, leaf.scale).weight;
@@ -107,7 +96,7 @@ TEST(Simplify, MergesGaussiansThatShareAFinestCell) {
   GaussianMap<3> map = transformMap<3>(build<3>(randomCloud<3>(9000, 5), smallGrid<3>()), motion);
   map = withOccupancy<3>(map, std::vector<float>(map.gaussianCount(0), 1.5f));
   ASSERT_GT(map.gaussianCount(0), map.cellCount(0));
-  const GaussianMap<3> simple = simplify<3>(map, withBudget(1.0));
+  const GaussianMap<3> simple = simplify<3>(map, PerCell{1.0}).map;
   EXPECT_EQ(simple.gaussianCount(0), map.cellCount(0));
   EXPECT_EQ(simple.logOdds(0, 0), 1.5f);
   expectMomentMatches<3>(simple);
@@ -115,23 +104,23 @@ TEST(Simplify, MergesGaussiansThatShareAFinestCell) {
 }
 
 GaussianMap<3> detailedRoom() {
-  return refine<3>(roomMap(20000, 5, 2), gaussmap::withBudget(8.0, RefineMethod::Agglomerate));
+  return refine<3>(roomMap(20000, 5, 2), PerCell{8.0}).map;
 }
 
 TEST(Simplify, KeepsTheErrorThatItIsGiven) {
   const GaussianMap<3> map = detailedRoom();
-  CurveOptions measure;
-  measure.samples = 5000;
-  measure.data = 20000;
+  ErrorSampling sampling;
+  sampling.samples = 5000;
+  sampling.data = 20000;
   std::size_t last = map.gaussianCount(1);
   for (const double error : {0.1, 0.13, 0.2}) {
-    const SimplifiedToError simple = simplifyToError(map, error, {}, measure);
+    const RefineResult<3> simple = simplify(map, MaxError{error, sampling});
     EXPECT_TRUE(simple.not_reached.empty());
     EXPECT_LT(simple.map.gaussianCount(1), last) << error;
     last = simple.map.gaussianCount(1);
     expectMomentMatches<3>(simple.map);
   }
-  const SimplifiedToError strict = simplifyToError(map, 1e-6, {}, measure);
+  const RefineResult<3> strict = simplify(map, MaxError{1e-6, sampling});
   expectSameMap<3>(strict.map, map);
   ASSERT_EQ(strict.not_reached.size(), 1u);
   EXPECT_EQ(strict.not_reached[0].scale, 1);
@@ -141,25 +130,27 @@ TEST(Simplify, KeepsTheErrorThatItIsGiven) {
 TEST(Simplify, KeepsTheBytesThatItIsGiven) {
   const GaussianMap<3> map = detailedRoom();
   const auto bytesOf = [](const GaussianMap<3>& one) { return savedSize<3>(one); };
-  const std::uintmax_t all = bytesOf(map), least = bytesOf(simplify<3>(map, withBudget(1.0)));
+  const auto within = [&](std::uintmax_t bytes) { return simplify(map, maxFileBytes(bytes)).map; };
+  const std::uintmax_t all = bytesOf(map), least = bytesOf(simplify<3>(map, PerCell{1.0}).map);
   const std::uintmax_t most = (all + least) / 2;
-  const GaussianMap<3> simple = simplifyToBytes(map, most, bytesOf, {});
+  const GaussianMap<3> simple = within(most);
   EXPECT_LE(bytesOf(simple), most);
   EXPECT_GT(bytesOf(simple), least);
-  expectSameMap<3>(simplifyToBytes(map, all, bytesOf, {}), map);
-  EXPECT_THROW(simplifyToBytes(map, least - 1, bytesOf, {}), std::invalid_argument);
+  expectSameMap<3>(within(all), map);
+  EXPECT_THROW(within(least - 1), std::invalid_argument);
 }
 
 TEST(Simplify, RefusesLimitsThatMakeNoSense) {
   const GaussianMap<3> map = refinedMap<3>(randomCloud<3>(3000, 2), smallGrid<3>());
-  EXPECT_THROW(simplify<3>(map, withBudget(0.9)), std::invalid_argument);
-  EXPECT_THROW(simplify<3>(map, withBudget(std::nan(""))), std::invalid_argument);
-  SimplifyOptions options;
-  options.max_gaussians[1] = map.cellCount(1) - 1;
-  EXPECT_THROW(simplify<3>(map, options), std::invalid_argument);
-  options.max_gaussians = {{3, 1000}};
-  EXPECT_THROW(simplify<3>(map, options), std::invalid_argument);
-  EXPECT_THROW(simplifyToError(map, 0.0, {}), std::invalid_argument);
+  EXPECT_THROW(simplify<3>(map, PerCell{0.9}), std::invalid_argument);
+  EXPECT_THROW(simplify<3>(map, PerCell{std::nan("")}), std::invalid_argument);
+  EXPECT_THROW(simplify<3>(map, MaxGaussians{{{1, map.cellCount(1) - 1}}}), std::invalid_argument);
+  EXPECT_THROW(simplify<3>(map, MaxGaussians{{{3, 1000}}}), std::invalid_argument);
+  EXPECT_THROW(simplify<3>(map, MaxError{}), std::invalid_argument);
+  EXPECT_THROW(simplify<3>(map, MaxBytes{1000, {}}), std::invalid_argument);
+  const GaussianMap<2> plane = refinedMap<2>(randomCloud<2>(300, 2), smallGrid<2>());
+  EXPECT_THROW(simplify<2>(plane, MaxError{1.0, {}}), std::invalid_argument);
+  EXPECT_THROW(simplify<2>(plane, maxFileBytes(1000)), std::invalid_argument);
 }
 
 }  // namespace

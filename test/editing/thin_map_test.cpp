@@ -61,7 +61,7 @@ void expectWhatStaysToBeAsItWas(const GaussianMap<D>& map) {
 TEST(ThinMap, LeavesWhatStaysAsItWas) {
   const GaussianMapOctree map = build<3>(randomCloud<3>(4000, 71), {0.1, 3, 4, 0.0});
   expectWhatStaysToBeAsItWas<3>(map);
-  expectWhatStaysToBeAsItWas<3>(refine<3>(map));
+  expectWhatStaysToBeAsItWas<3>(refine<3>(map).map);
 }
 
 TEST(ThinMap, LeavesWhatStaysAsItWasInThePlane) {
@@ -69,7 +69,7 @@ TEST(ThinMap, LeavesWhatStaysAsItWasInThePlane) {
 }
 
 TEST(ThinMap, OfAllCellsIsTheMap) {
-  const GaussianMapOctree map = refine<3>(build<3>(randomCloud<3>(2000, 73), {0.1, 4, 3, 0.0}));
+  const GaussianMapOctree map = refine<3>(build<3>(randomCloud<3>(2000, 73), {0.1, 4, 3, 0.0})).map;
   std::vector<std::vector<char>> all;
   for (int s = 0; s < 3; ++s) all.emplace_back(map.cellCount(s), true);
   test::expectSameMap<3>(thinMap<3>(map, all), map);

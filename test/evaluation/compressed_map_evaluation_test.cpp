@@ -23,7 +23,7 @@ using test::randomCloud;
 constexpr double kNothing = -std::numeric_limits<double>::infinity();
 
 GaussianMapOctree wholeMap() {
-  return refine<3>(build<3>(randomCloud<3>(4000, 61), {0.1, 4, 3, 0.0}));
+  return refine<3>(build<3>(randomCloud<3>(4000, 61), {0.1, 4, 3, 0.0})).map;
 }
 
 GaussianMapOctree smallMap() {

@@ -72,10 +72,9 @@ TEST(FarFromTheOrigin, AMapOfScansIsTheSameThroughAllOfItsLife) {
   };
   GaussianMapOctree here = mapOf(near), there = mapOf(far);
   expectShifted(here, there);
-  RefineOptions refining;  // RefineMethod::Insert draws its random numbers by cell, and so by place
-  refining.budget = 2.5;
-  here = refine<3>(here, refining);
-  there = refine<3>(there, refining);
+  // By agglomeration: RefineMethod::Insert draws its random numbers by cell, and so by place.
+  here = refine<3>(here, PerCell{2.5}).map;
+  there = refine<3>(there, PerCell{2.5}).map;
   ASSERT_GT(here.gaussianCount(1), 2 * here.cellCount(1));
   expectShifted(here, there);
   for (const Precision precision : {Precision::Exact, Precision::Finished}) {

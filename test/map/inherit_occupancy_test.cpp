@@ -33,7 +33,7 @@ GaussianMapOctree asked(const GaussianMapOctree& map) {
 }
 
 GaussianMapOctree randomMap(std::uint64_t seed) {
-  return refine(build<3>(randomCloud<3>(3000, seed), kOptions));
+  return refine(build<3>(randomCloud<3>(3000, seed), kOptions)).map;
 }
 
 TEST(Occupancy, IsCertainUntilAScanIsAsked) {
@@ -77,9 +77,7 @@ TEST(Occupancy, SurvivesThePcdFile) {
 }
 
 TEST(Occupancy, OfACoarseGaussianIsTheHighestUnderIt) {
-  RefineOptions twice;
-  twice.budget = 2.0;
-  for (const GaussianMapOctree& map : {asked(randomMap(5)), refine(asked(randomMap(5)), twice)})
+  for (const GaussianMapOctree& map : {asked(randomMap(5)), refine(asked(randomMap(5)), PerCell{2.0}).map})
     for (int s = 1; s < map.scales(); ++s)
       for (std::size_t i = 0; i < map.gaussianCount(s); ++i) {
         float highest = -std::numeric_limits<float>::infinity();

@@ -23,7 +23,7 @@ TEST(MemberBoxes, OfTwoCellsIsTheBoxAroundBoth) {
 }
 
 TEST(MemberBoxes, HoldTheMeansOfAllDescendants) {
-  const GaussianMapOctree map = refine<3>(build<3>(test::randomCloud<3>(3000, 41), {0.1, 4, 3, 0.0}));
+  const GaussianMapOctree map = refine<3>(build<3>(test::randomCloud<3>(3000, 41), {0.1, 4, 3, 0.0})).map;
   for (int s = 1; s < map.scales(); ++s) {
     const std::vector<Box<3>> boxes = memberBoxes<3>(map, s);
     ASSERT_EQ(boxes.size(), map.gaussianCount(s));
@@ -68,7 +68,7 @@ TEST(MemberBoxes, OfAClusterWithoutMembersIsItsCellAndCountsInTheScalesAbove) {
 
 TEST(MemberBoxes, WhereDetailWasDeletedAreTheCellsThatStandThere) {
   Random random(43);
-  const GaussianMapOctree map = refine<3>(build<3>(roomPoints(random, 20000), {0.1, 4, 4, 0.0}));
+  const GaussianMapOctree map = refine<3>(build<3>(roomPoints(random, 20000), {0.1, 4, 4, 0.0})).map;
   const GaussianMapOctree thin = compress(map, 0.08);
   ASSERT_GT(thin.cellCount(0), 0u);
   ASSERT_LT(thin.cellCount(0), map.cellCount(0) / 2);

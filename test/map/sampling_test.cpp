@@ -106,7 +106,7 @@ std::size_t samplesOutsideMembers(const GaussianMap<D>& map, int scale, const Ma
 
 template <int D>
 void expectSamplesAmongTheMembers(double far) {
-  const GaussianMap<D> map = refine<D>(randomMap<D>(far, 300));
+  const GaussianMap<D> map = refine<D>(randomMap<D>(far, 300)).map;
   SampleOptions in_cells;
   in_cells.bounds = SampleBounds::Cell;
   for (int scale = 1; scale < map.scales(); ++scale) {

@@ -27,7 +27,7 @@ template <int D>
 GaussianMap<D> refinedMap(const std::vector<Vector<D>>& points, const MapOptions& options) {
   RefineOptions refinement;
   refinement.threads = 1;
-  return refine<D>(build<D>(points, options), refinement);
+  return refine<D>(build<D>(points, options), PerCell{}, refinement).map;
 }
 
 /// Every coarse cluster is the moment match of what is linked to it, and something is.

@@ -35,10 +35,10 @@ Dendrogram dendrogramUnder(const GaussianMap<3>& map, std::size_t cell, int s, M
 }
 
 TEST(RefineByAgglomeration, CutsTheDendrogramsWhereItGainsMost) {
-  for (const MergeCost cost : {MergeCost::Volume, MergeCost::VolumeArea, MergeCost::Runnalls}) {
-    RefineOptions options = withBudget(2.3, RefineMethod::Agglomerate);
+  for (const MergeCost cost : {MergeCost::Volume, MergeCost::Runnalls}) {
+    RefineOptions options;
     options.merge_cost = cost;
-    const GaussianMap<3> refined = refine(roomMap(20000, 3, 4), options);
+    const GaussianMap<3> refined = refine(roomMap(20000, 3, 4), PerCell{2.3}, options).map;
     for (int s = 1; s < refined.scales(); ++s) {
       std::vector<Dendrogram> dendrograms;
       std::vector<std::vector<double>> gains;
@@ -62,11 +62,10 @@ TEST(RefineByAgglomeration, IgnoresSeedAndOptionsOfInsertion) {
   const GaussianMap<3> map = roomMap(20000);
   RefineOptions options;
   ASSERT_EQ(options.method, RefineMethod::Agglomerate);  // the default
-  const GaussianMap<3> refined = refine(map, options);
+  const GaussianMap<3> refined = refine(map).map;
   options.seed = 6;
   options.queue = 1;
-  options.cell_choice = CellChoice::Volume;
-  expectSameBytes(refine(map, options), refined);
+  expectSameBytes(refine(map, PerCell{}, options).map, refined);
 }
 
 TEST(RefineByAgglomeration, DoesNotCareHowDenseThePointsAre) {
@@ -77,9 +76,9 @@ TEST(RefineByAgglomeration, DoesNotCareHowDenseThePointsAre) {
   for (std::size_t cell = 0; cell < map.cellCount(0); ++cell) finest.gaussians.push_back(map.localGaussian(cell, 0));
   MapScale<3> dense = finest;
   for (std::size_t cell = 0; cell < dense.keys.size(); cell += 3) dense.gaussians[cell].weight *= 1000.0;
-  const GaussianMap<3> refined = refine(build(finest, map.options()));
-  EXPECT_EQ(refine(build(dense, map.options())).scale(0).parent, refined.scale(0).parent);
-  EXPECT_EQ(refine(map).scale(0).parent, refined.scale(0).parent);
+  const GaussianMap<3> refined = refine(build(finest, map.options())).map;
+  EXPECT_EQ(refine(build(dense, map.options())).map.scale(0).parent, refined.scale(0).parent);
+  EXPECT_EQ(refine(map).map.scale(0).parent, refined.scale(0).parent);
 }
 
 TEST(RefineByAgglomeration, SharesTheAreaOfACellAmongItsGaussians) {
@@ -94,7 +93,7 @@ TEST(RefineByAgglomeration, SharesTheAreaOfACellAmongItsGaussians) {
   options.scales = 2;
   MapScale<2> coarse = coarsen(finest, Grid<2>(options), 0);
   const GaussianMap<2> map(options, {finest, coarse});
-  const GaussianMap<2> refined = refine(map, withBudget(2.0, RefineMethod::Agglomerate));
+  const GaussianMap<2> refined = refine(map, PerCell{2.0}, by(RefineMethod::Agglomerate)).map;
   ASSERT_EQ(refined.gaussianCount(1), 2u);
   EXPECT_EQ(refined.scale(0).parent, (std::vector<std::uint32_t>{0, 1, 1}));
 }
@@ -105,7 +104,7 @@ TEST(RefineByAgglomeration, TakesGaussiansWithoutExtent) {
   finest.gaussians.assign(3, {{0, 0}, Eigen::Matrix2d::Zero(), 1.0});
   MapOptions options;
   options.scales = 2;
-  const GaussianMap<2> refined = refine(build(finest, options), withBudget(2.0, RefineMethod::Agglomerate));
+  const GaussianMap<2> refined = refine(build(finest, options), PerCell{2.0}, by(RefineMethod::Agglomerate)).map;
   EXPECT_EQ(refined.scale(0).parent, (std::vector<std::uint32_t>{0, 0, 1}));
 }
 
@@ -117,8 +116,8 @@ TEST(RefineByAgglomeration, ClaimsLessVolumeThanInsertion) {
       volume += std::exp(0.5 * logDeterminant<3>(cluster.cov));
     return volume;
   };
-  const GaussianMap<3> merged = refine(map, withBudget(3.0, RefineMethod::Agglomerate));
-  const GaussianMap<3> inserted = refine(map, withBudget(3.0, RefineMethod::Insert));
+  const GaussianMap<3> merged = refine(map, PerCell{3.0}, by(RefineMethod::Agglomerate)).map;
+  const GaussianMap<3> inserted = refine(map, PerCell{3.0}, by(RefineMethod::Insert)).map;
   for (int s = 1; s < map.scales(); ++s) EXPECT_LT(volumeOf(merged, s), volumeOf(inserted, s));
 }
 

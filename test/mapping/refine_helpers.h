@@ -24,9 +24,8 @@ inline GaussianMap<3> roomMap(std::size_t points = 60000, int ratio = 5, int sca
   return build(roomPoints(random, points), options);
 }
 
-inline RefineOptions withBudget(double budget, RefineMethod method) {
+inline RefineOptions by(RefineMethod method) {
   RefineOptions options;
-  options.budget = budget;
   options.method = method;
   return options;
 }

@@ -32,20 +32,23 @@ TEST(CellError, UsesTheWholeCovariance) {  // correlated data: (1, -1) is farthe
 
 TEST(Refine, NamesTheOptionThatItRefuses) {
   const GaussianMap<3> map = roomMap(100);
-  const auto messageFor = [&](void (*spoil)(RefineOptions&)) -> std::string {
+  const auto messageFor = [&](void (*spoil)(RefineOptions&), const Budget& budget = PerCell{}) -> std::string {
     RefineOptions options;
     spoil(options);
     try {
-      refine(map, options);
+      refine(map, budget, options);
     } catch (const std::invalid_argument& error) {
       return error.what();
     }
     return "accepted";
   };
-  EXPECT_EQ(messageFor([](RefineOptions& o) { o.budget = 0.99; }),
-            "budget = 0.99: must be at least 1 Gaussian per cell");
-  EXPECT_EQ(messageFor([](RefineOptions& o) { o.budget = std::nan(""); }).find("budget"), 0u);
-  EXPECT_EQ(messageFor([](RefineOptions& o) { o.budget = HUGE_VAL; }).find("budget"), 0u);
+  for (const double budget : {0.99, std::nan(""), HUGE_VAL})
+    EXPECT_EQ(messageFor([](RefineOptions&) {}, PerCell{budget}).find("budget"), 0u);
+  EXPECT_EQ(messageFor([](RefineOptions&) {}, MaxBytes{1000, {}}).find("max_bytes"), 0u);
+  EXPECT_EQ(messageFor([](RefineOptions&) {}, MaxError{-1.0, {}}).find("max_error"), 0u);
+  EXPECT_EQ(messageFor([](RefineOptions& o) { o.curves = CurveOptions{{0.5}, {}}; }).find("multiples"), 0u);
+  const auto inserted = [](RefineOptions& o) { o.method = RefineMethod::Insert; };
+  EXPECT_EQ(messageFor(inserted, MaxError{1.0, {}}).find("method"), 0u);
   EXPECT_EQ(messageFor([](RefineOptions& o) { o.queue = -1; }).find("queue"), 0u);
   EXPECT_EQ(messageFor([](RefineOptions& o) { o.max_swaps = -1; }).find("max_swaps"), 0u);
   EXPECT_EQ(messageFor([](RefineOptions& o) { o.threads = -1; }).find("threads"), 0u);
@@ -60,22 +63,22 @@ std::string nameOf(const testing::TestParamInfo<RefineMethod>& method) {
 INSTANTIATE_TEST_SUITE_P(All, RefineBy, testing::ValuesIn(kMethods), nameOf);
 
 TEST_P(RefineBy, LeavesAnEmptyMapAndASingleScaleAlone) {
-  EXPECT_TRUE(refine(GaussianMap<3>(), withBudget(3.0, GetParam())).empty());
+  EXPECT_TRUE(refine(GaussianMap<3>(), PerCell{3.0}, by(GetParam())).map.empty());
   const GaussianMap<3> single = roomMap(1000, 5, 1);
-  expectSameBytes(refine(single, withBudget(3.0, GetParam())), single);
+  expectSameBytes(refine(single, PerCell{3.0}, by(GetParam())).map, single);
 }
 
 TEST_P(RefineBy, WithABudgetOfOneIsCoarsening) {
   const GaussianMap<3> map = roomMap();
-  expectSameBytes(refine(map, withBudget(1.0, GetParam())), map);
-  expectSameBytes(refine(refine(map, withBudget(4.0, GetParam())), withBudget(1.0, GetParam())),
+  expectSameBytes(refine(map, PerCell{1.0}, by(GetParam())).map, map);
+  expectSameBytes(refine(refine(map, PerCell{4.0}, by(GetParam())).map, PerCell{1.0}, by(GetParam())).map,
                   map);  // older clusters are forgotten
 }
 
 TEST_P(RefineBy, KeepsToItsBudgetAndUsesIt) {
   const GaussianMap<3> map = roomMap();
   for (double budget : {1.0, 1.003, 1.5, 2.0, 3.7}) {
-    const GaussianMap<3> refined = refine(map, withBudget(budget, GetParam()));
+    const GaussianMap<3> refined = refine(map, PerCell{budget}, by(GetParam())).map;
     EXPECT_EQ(refined.gaussianCount(0), map.gaussianCount(0));
     for (int s = 1; s < map.scales(); ++s) {
       EXPECT_EQ(refined.cellCount(s), map.cellCount(s));
@@ -87,18 +90,18 @@ TEST_P(RefineBy, KeepsToItsBudgetAndUsesIt) {
 
 TEST_P(RefineBy, StopsAtAClusterForEveryFinerGaussian) {
   const GaussianMap<3> map = roomMap(3000, 3, 2);
-  const GaussianMap<3> refined = refine(map, withBudget(1e300, GetParam()));
+  const GaussianMap<3> refined = refine(map, PerCell{1e300}, by(GetParam())).map;
   EXPECT_EQ(refined.gaussianCount(1), refined.gaussianCount(0));
   EXPECT_EQ(meanError(refined, 1), 0.0);
 }
 
 TEST_P(RefineBy, KeepsTheNumberOfPointsAtEveryScale) {
-  const GaussianMap<3> refined = refine(roomMap(), withBudget(3.0, GetParam()));
+  const GaussianMap<3> refined = refine(roomMap(), PerCell{3.0}, by(GetParam())).map;
   for (int s = 0; s < refined.scales(); ++s) EXPECT_EQ(refined.weight(s), 60000.0);
 }
 
 TEST_P(RefineBy, MakesEveryClusterTheMomentMatchOfItsChildren) {
-  const GaussianMap<3> refined = refine(roomMap(), withBudget(3.0, GetParam()));
+  const GaussianMap<3> refined = refine(roomMap(), PerCell{3.0}, by(GetParam())).map;
   for (int s = 1; s < refined.scales(); ++s) {
     for (std::size_t cell = 0; cell < refined.cellCount(s); ++cell) {
       const std::vector<Gaussian<3>> data = dataUnder(refined, cell, s);
@@ -126,7 +129,7 @@ TEST_P(RefineBy, PutsThePoleOfACellIntoAClusterOfItsOwn) {
   MapOptions map_options;
   map_options.ratio = 40;
   map_options.scales = 2;
-  const GaussianMap<3> refined = refine(build(points, map_options), withBudget(2.0, GetParam()));
+  const GaussianMap<3> refined = refine(build(points, map_options), PerCell{2.0}, by(GetParam())).map;
   ASSERT_EQ(refined.gaussianCount(1), 2u);
   const Gaussian<3> a = refined.gaussian(0, 1), b = refined.gaussian(1, 1);
   const Gaussian<3>& floor = a.weight > b.weight ? a : b;
@@ -139,23 +142,23 @@ TEST_P(RefineBy, PutsThePoleOfACellIntoAClusterOfItsOwn) {
 
 TEST_P(RefineBy, DependsOnTheFinestScaleOnly) {
   const GaussianMap<3> map = roomMap(20000);
-  const GaussianMap<3> refined = refine(map, withBudget(3.0, GetParam()));
-  expectSameBytes(refine(map, withBudget(3.0, GetParam())), refined);
-  expectSameBytes(refine(refined, withBudget(3.0, GetParam())), refined);
+  const GaussianMap<3> refined = refine(map, PerCell{3.0}, by(GetParam())).map;
+  expectSameBytes(refine(map, PerCell{3.0}, by(GetParam())).map, refined);
+  expectSameBytes(refine(refined, PerCell{3.0}, by(GetParam())).map, refined);
 }
 
 TEST_P(RefineBy, GivesTheSameBytesAtAnyNumberOfThreads) {
   const GaussianMap<3> map = roomMap(60000, 4, 3);
   for (const MergeCost cost : {MergeCost::Volume, MergeCost::Runnalls}) {
     for (const int queue : {0, 1, 500}) {  // 500: rounds of insertions that are worth several threads
-      RefineOptions options = withBudget(4.0, GetParam());
+      RefineOptions options = by(GetParam());
       options.merge_cost = cost;
       options.queue = queue;
       options.threads = 1;
-      const GaussianMap<3> alone = refine(map, options);
+      const GaussianMap<3> alone = refine(map, PerCell{4.0}, options).map;
       for (int threads : {2, 3, 0}) {
         options.threads = threads;
-        expectSameBytes(refine(map, options), alone);
+        expectSameBytes(refine(map, PerCell{4.0}, options).map, alone);
       }
     }
   }
@@ -165,7 +168,7 @@ TEST_P(RefineBy, LowersTheErrorWithTheBudget) {
   const GaussianMap<3> map = roomMap();
   double before = std::numeric_limits<double>::infinity();
   for (double budget : {1.0, 1.5, 2.0, 3.0, 5.0}) {
-    const double error = meanError(refine(map, withBudget(budget, GetParam())), 1);
+    const double error = meanError(refine(map, PerCell{budget}, by(GetParam())).map, 1);
     EXPECT_LT(error, before);
     before = error;
   }
@@ -176,9 +179,9 @@ TEST_P(RefineBy, HandlesOneCellAndOnePoint) {
   MapOptions options;
   options.scales = 3;
   const GaussianMap<2> one = build(std::vector<Vector<2>>{{0.5, 0.5}}, options);
-  expectSameBytes(refine(one, withBudget(3.0, GetParam())), one);
+  expectSameBytes(refine(one, PerCell{3.0}, by(GetParam())).map, one);
   const GaussianMap<2> two =
-      refine(build(std::vector<Vector<2>>{{0.05, 0.05}, {0.45, 0.45}}, options), withBudget(3.0, GetParam()));
+      refine(build(std::vector<Vector<2>>{{0.05, 0.05}, {0.45, 0.45}}, options), PerCell{3.0}, by(GetParam())).map;
   EXPECT_EQ(two.gaussianCount(1), 2u);  // budget 3, but there are only two
   EXPECT_EQ(two.gaussianCount(2), 2u);
   EXPECT_EQ(two.parentOf(1, 0), 1u);
@@ -194,7 +197,7 @@ TEST_P(RefineBy, WorksInThePlane) {
   }
   MapOptions options;
   options.resolution = 0.05;
-  const GaussianMap<2> refined = refine(build(points, options), withBudget(3.0, GetParam()));
+  const GaussianMap<2> refined = refine(build(points, options), PerCell{3.0}, by(GetParam())).map;
   EXPECT_EQ(refined.gaussianCount(1), 3 * refined.cellCount(1));
   EXPECT_EQ(refined.weight(2), 5000.0);
 }

@@ -25,7 +25,7 @@ namespace gaussmap {
 namespace {
 
 GaussianMapOctree refinedMap() {
-  return refine<3>(build<3>(test::randomCloud<3>(4000, 31), {0.1, 5, 3, 0.0}));
+  return refine<3>(build<3>(test::randomCloud<3>(4000, 31), {0.1, 5, 3, 0.0})).map;
 }
 
 TEST(PointGaussian, ComesOutOfAnExportedFileThroughPcl) {

@@ -44,7 +44,7 @@ struct Hall {
     Simulation hall = makeSimulation(WorldName::Hall);
     std::get<LidarOptions>(hall.sensor).columns = 450;
     for (std::size_t i = 0; i < count; ++i) scans.push_back(simulateScan(hall, i));
-    map = refine<3>(build<3>(inMap(0), {0.2, 3, 4, 0.0}));
+    map = refine<3>(build<3>(inMap(0), {0.2, 3, 4, 0.0})).map;
   }
   std::vector<Vector<3>> inMap(std::size_t i) const {
     std::vector<Vector<3>> points;
@@ -107,7 +107,7 @@ TEST(Registration, MovesOneMapOntoAnother) {
   for (const Vector<3>& point : hall.inMap(1))
     elsewhere.push_back(offset.rotation.conjugate() * (point - offset.translation));
   const GaussianMapOctree other = build<3>(elsewhere, {0.2, 3, 3, 0.0});
-  for (const GaussianMapOctree& source : {other, refine<3>(other), finish<3>(other)}) {
+  for (const GaussianMapOctree& source : {other, refine<3>(other).map, finish<3>(other)}) {
     const RegistrationResult result = registerMap(source, hall.map);
     EXPECT_TRUE(result.converged);
     EXPECT_FALSE(result.degenerate);
@@ -144,7 +144,7 @@ TEST(Registration, StaysWithTheGuessWhenTheOtherMapIsEmpty) {
 }
 
 TEST(Registration, SaysThatACorridorDoesNotTellWhereAlongIt) {
-  const GaussianMapOctree open = refine<3>(build<3>(corridor(false, 1), {0.25, 4, 2, 0.0}));
+  const GaussianMapOctree open = refine<3>(build<3>(corridor(false, 1), {0.25, 4, 2, 0.0})).map;
   const std::vector<Vector<3>> scan = corridor(false, 2);
   const RegistrationResult lost = registerScan({scan.begin(), scan.end()}, open);
   EXPECT_TRUE(lost.degenerate);
@@ -152,7 +152,7 @@ TEST(Registration, SaysThatACorridorDoesNotTellWhereAlongIt) {
   EXPECT_NEAR(lost.pose.translation.y(), 0.0, 0.01);
   EXPECT_NEAR(lost.pose.translation.z(), 0.0, 0.01);
 
-  const GaussianMapOctree closed = refine<3>(build<3>(corridor(true, 1), {0.25, 4, 2, 0.0}));
+  const GaussianMapOctree closed = refine<3>(build<3>(corridor(true, 1), {0.25, 4, 2, 0.0})).map;
   const std::vector<Vector<3>> seen = corridor(true, 2);
   const RegistrationResult found = registerScan({seen.begin(), seen.end()}, closed, posed({0.2, 0, 0}, 0.0, {0, 0, 1}));
   EXPECT_FALSE(found.degenerate);
@@ -174,7 +174,7 @@ TEST(Registration, LosesNothingFarFromTheOrigin) {
   const Eigen::Vector3d far(1e7, -2e7, 5e6);
   std::vector<Vector<3>> points = hall.inMap(0);
   for (Vector<3>& point : points) point += far;
-  const GaussianMapOctree there = refine<3>(build<3>(points, {0.2, 3, 4, 0.0}));
+  const GaussianMapOctree there = refine<3>(build<3>(points, {0.2, 3, 4, 0.0})).map;
   const Pose truth = hall.scans[1].pose;
   Pose guess = truth;
   guess.translation += far + Eigen::Vector3d(0.4, 0.3, 0.0);

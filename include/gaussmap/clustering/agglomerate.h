@@ -12,10 +12,9 @@ namespace gaussmap {
 /// What it costs to replace two clusters by their moment match S_12, Yguel 2009 eqs. (9), (10). May be negative: two
 /// clusters in the same place fill one ellipsoid instead of two.
 enum class MergeCost {
-  Volume,     ///< sqrt(det S_12) - sqrt(det S_1) - sqrt(det S_2): space that the map claims without having seen it
-  Runnalls,   ///< ((w_1 + w_2) ln det S_12 - w_1 ln det S_1 - w_2 ln det S_2) / 2, w = weights: bound of the likelihood
-              ///< that is lost (Runnalls 2007); the moment match is by weight too, areas are not used
-  VolumeArea  ///< volume growth times sqrt(area): large surfaces resist longer
+  Volume,   ///< sqrt(det S_12) - sqrt(det S_1) - sqrt(det S_2): space that the map claims without having seen it
+  Runnalls  ///< ((w_1 + w_2) ln det S_12 - w_1 ln det S_1 - w_2 ln det S_2) / 2, w = weights: bound of the likelihood
+            ///< that is lost (Runnalls 2007); the moment match is by weight too, areas are not used
 };
 
 struct AgglomerateOptions {
@@ -30,7 +29,7 @@ struct Dendrogram {
   struct Merge {
     std::uint32_t first = 0;   ///< node; it holds the smallest datum of the two
     std::uint32_t second = 0;  ///< node
-    double cost = 0.0;         ///< [m^D], [nat] or [m^D sqrt(area)]; not always rising
+    double cost = 0.0;         ///< [m^D] or [nat]; not always rising
   };
   std::size_t size = 0;       ///< n
   std::vector<Merge> merges;  ///< n - 1 in the order they were made (n = 0: none)

@@ -14,20 +14,12 @@ enum class ClusterSeed {
   Datum,             ///< the datum itself, as printed: its own small covariance repels every other datum
 };
 
-/// Which datum has the largest distortion (line 9).
-enum class WorstDatum {
-  Distance,  ///< largest d(z, w), as printed: a far datum of small weight counts as much as any, space is covered
-             ///< evenly
-  Weighted,  ///< largest alpha d(z, w), what it adds to [7]: the distortion falls faster, thin data are left for later
-};
-
 struct KLKMeansOptions {
   int k = 8;                ///< clusters asked for, >= 1
   int max_iterations = 50;  ///< of one run of k-means, >= 1
   double tolerance = 1e-6;  ///< a run stops when the distortion falls by less than this fraction, >= 0
   int max_swaps = 20;       ///< most rounds of the swap loop of Algorithm 2, >= 0 (0 = plain k-means)
   ClusterSeed seed_rule = ClusterSeed::ParentCovariance;
-  WorstDatum worst_rule = WorstDatum::Distance;
   std::uint64_t seed = 0;  ///< same input + same seed = same result
 };
 

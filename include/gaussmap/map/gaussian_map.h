@@ -52,6 +52,9 @@ class GaussianMap {
   /// From finished scales, finest first. Throws std::invalid_argument, saying what, if they do not fit together.
   GaussianMap(const MapOptions& options, std::vector<MapScale<D>> scales);
 
+  /// Moves all scales out, finest first: std::move(map).takeScales(). The map is empty afterwards.
+  std::vector<MapScale<D>> takeScales() &&;
+
   const Grid<D>& grid() const { return grid_; }
   const MapOptions& options() const { return grid_.options(); }
   int scales() const { return grid_.scales(); }

@@ -17,7 +17,7 @@ namespace gaussmap {
 
 struct GaussianMapRegistrationOptions {
   MapOptions map{0.5, 3, 4, 0.0};  ///< of the map that is made of a target cloud
-  double budget = 3.0;             ///< Gaussians of its coarse scales per cell, RefineOptions::budget
+  double budget = 3.0;             ///< Gaussians of its coarse scales per cell, PerCell::gaussians
   RegistrationOptions registration;
 };
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "map/link_cells.h"
+#include "map/map_scale_builder.h"
 
 namespace gaussmap::detail {
 namespace {
@@ -21,27 +22,25 @@ template <int D>
 OrderedScale<D> inKeyOrder(const Tile<D>& tile, const MapOptions& options, int s) {
   std::vector<std::size_t> first(tile.keys.size() + 1, 0);
   for (std::size_t i = 0; i < tile.counts.size(); ++i) first[i + 1] = first[i] + tile.counts[i];
-  const bool single = first.back() == tile.keys.size();
-  if (!tile.moments.empty() && (tile.moments.size() != tile.keys.size() || !tile.gaussians.empty()))
+  const bool one_per_cell = tile.moments.size() == tile.keys.size() && first.back() == tile.keys.size();
+  if (!tile.moments.empty() && (!one_per_cell || !tile.gaussians.empty()))
     throw std::invalid_argument("some cells hold moments and some do not");
   if (!tile.log_odds.empty() && tile.log_odds.size() != first.back())
     throw std::invalid_argument("some cells hold an occupancy and some do not");
-  OrderedScale<D> ordered;
-  MapScale<D>& scale = ordered.scale;
-  if (!single) scale.first_gaussian.push_back(0);
+  MapScaleBuilder<D> scale;
+  std::vector<std::uint32_t> labels;
   for (const std::uint32_t from : keyOrder<D>(tile.keys, options.ratio, options.scales - 1 - s)) {
-    scale.keys.push_back(tile.keys[from]);
-    if (!tile.moments.empty()) scale.moments.push_back(tile.moments[from]);
+    scale.addCell(tile.keys[from]);
+    if (!tile.moments.empty()) scale.addMoments(tile.moments[from]);
     for (std::size_t i = first[from]; i < first[from + 1]; ++i) {
-      if (!tile.gaussians.empty()) scale.gaussians.push_back(tile.gaussians[i]);
-      if (!tile.log_odds.empty()) scale.log_odds.push_back(tile.log_odds[i]);
+      if (!tile.gaussians.empty()) scale.addGaussian(tile.gaussians[i]);
+      if (!tile.log_odds.empty()) scale.addLogOdds(tile.log_odds[i]);
       if (s + 1 == options.scales) continue;
       if (i >= tile.labels.size()) throw std::invalid_argument("a Gaussian without a parent");
-      ordered.labels.push_back(tile.labels[i]);
+      labels.push_back(tile.labels[i]);
     }
-    if (!single) scale.first_gaussian.push_back(static_cast<std::uint32_t>(scale.gaussians.size()));
   }
-  return ordered;
+  return {scale.take(), std::move(labels)};
 }
 
 /// Finds the children of every cell and turns labels into parents.

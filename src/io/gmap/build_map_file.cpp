@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <variant>
 
 #include "core/check.h"
 #include "core/parallel.h"
@@ -19,8 +20,10 @@
 #include "io/gmap/gain_threshold.h"
 #include "io/gmap/map_schema.h"
 #include "io/gmap/spilled_cells.h"
+#include "map/areas.h"
 #include "map/coarsen.h"
-#include "mapping/refine_scale.h"
+#include "mapping/budget.h"
+#include "mapping/scale_clusters.h"
 
 namespace gaussmap {
 using namespace detail;
@@ -158,7 +161,10 @@ class Builder {
 
  private:
   int threads() const { return options_.refine.threads; }
-  bool refines() const { return options_.refine.budget != 1.0 || !options_.refine.max_gaussians.empty(); }
+  bool refines() const {
+    const auto* per_cell = std::get_if<PerCell>(&options_.budget);
+    return per_cell == nullptr || per_cell->gaussians != 1.0;
+  }
 
   /// Makes the scale above and keeps the tiles of this one, which then know their parents.
   void finishScale(int s, SpilledCells& coarser) {
@@ -171,35 +177,34 @@ class Builder {
         giveBackMemory();
         CellBatch batch = cells_->load(tiles, threads());
         MapScale<3> coarse = coarsen<3>(batch.cells, grid_, s);
-        const CoarseScale<3> scale{batch.cells, coarse, grid_, s};
-        cuts.push_back(keepCuts(coarse.keys, ScaleCuts<3>(scale, batch.areas, options_.refine)));
+        const ScalePair<3> pair{batch.cells, coarse, grid_, s};
+        cuts.push_back(
+            keepCuts(coarse.keys, ScaleClusters::under(pair, batch.areas, options_.refine.merge_cost, threads())));
         coarse_cells += coarse.keys.size();
         gaussians += batch.cells.gaussianCount();
       }
       budget.emplace(spill_, cuts, grid_.options(), s + 1,
-                     extraGaussians(options_.refine, s + 1, coarse_cells, gaussians));
+                     extraGaussians(options_.budget, s + 1, coarse_cells, gaussians));
     }
     for (std::size_t i = 0; i < batches.size(); ++i) {
       giveBackMemory();
       CellBatch batch = cells_->load(batches[i], threads());
       MapScale<3> coarse = coarsen<3>(batch.cells, grid_, s);
       if (budget) cut(batch, coarse, s, cuts[i], *budget);
-      std::vector<double> areas(coarse.gaussianCount(), 0.0);
-      for (std::size_t j = 0; j < batch.areas.size(); ++j) areas[batch.cells.parent[j]] += batch.areas[j];
-      coarser.add(coarse, areas);
+      coarser.add(coarse, coarserAreas(batch.cells, batch.areas, coarse.gaussianCount()));
       keepTiles(batch, &coarse, s);
     }
   }
 
-  SpilledCuts keepCuts(const std::vector<CellKey<3>>& keys, const ScaleCuts<3>& cuts) {
+  SpilledCuts keepCuts(const std::vector<CellKey<3>>& keys, const ScaleClusters& clusters) {
     std::vector<std::uint32_t> sizes;
     std::vector<Dendrogram::Merge> merges;
     std::vector<double> gains;
     for (std::size_t cell = 0; cell < keys.size(); ++cell) {
-      const std::vector<Dendrogram::Merge>& own = cuts.dendrograms()[cell].merges;
+      const std::vector<Dendrogram::Merge>& own = clusters.dendrograms()[cell].merges;
       sizes.push_back(static_cast<std::uint32_t>(own.size()));
       merges.insert(merges.end(), own.begin(), own.end());
-      gains.insert(gains.end(), cuts.gains()[cell].begin(), cuts.gains()[cell].end());
+      gains.insert(gains.end(), clusters.gains()[cell].begin(), clusters.gains()[cell].end());
     }
     const auto keep = [&](const auto& values) {
       std::string bytes;
@@ -218,12 +223,11 @@ class Builder {
       dendrograms.push_back({std::size_t{size} + 1, {next, next + size}});
       next += size;
     }
-    CoarseScale<3> scale{batch.cells, coarse, grid_, s};
-    const ScaleCuts<3> cuts(scale, std::move(dendrograms), threads());
+    const ScaleClusters clusters(std::move(dendrograms), threads());
     std::vector<std::size_t> parts;
     for (std::size_t cell = 0; cell < sizes.size(); ++cell)
-      parts.push_back(budget.partsOf(coarse.keys[cell], cuts.gains()[cell]));
-    scale.replaceGaussians(cuts.clusters(parts));
+      parts.push_back(budget.partsOf(coarse.keys[cell], clusters.gains()[cell]));
+    setClusters(ScalePair<3>{batch.cells, coarse, grid_, s}, clusters.cut(parts), threads());
   }
 
   /// The tiles of a batch, compressed; `coarse` = the cells above, nullptr at the coarsest scale.
@@ -280,7 +284,10 @@ BuiltMapFile buildMapFile(const Scans& scans, const AccumulateOptions& reading, 
   if (options.save.precision != Precision::Exact) throw std::invalid_argument("precision: build first, then finish");
   if (reading.resolution != map.resolution)
     throw std::invalid_argument("resolution: the scans are counted in other cells than the map has");
-  refine<3>(GaussianMap<3>(map), options.refine);  // looks at the options; there is nothing to do yet
+  if (!std::holds_alternative<PerCell>(options.budget) && !std::holds_alternative<MaxGaussians>(options.budget))
+    throw std::invalid_argument("budget: MaxBytes and MaxError need the whole map; build first, then refine");
+  if (options.refine.curves) throw std::invalid_argument("curves: need the whole map; build first, then refine");
+  checkRefinement(options.budget, options.refine, Grid<3>(map).scales());
   std::error_code error;
   if (!options.save.overwrite && std::filesystem::exists(path, error))
     throw FileError(path, "exists already and is kept");

@@ -19,7 +19,7 @@
 #include "io/gmap/assemble_map.h"
 #include "io/gmap/cut_tiles.h"
 #include "io/gmap/map_schema.h"
-#include "io/gmap/update_part.h"
+#include "mapping/update_part.h"
 
 namespace gaussmap {
 using namespace detail;

@@ -8,7 +8,7 @@
 
 #include "core/parallel.h"
 #include "io/gmap/map_schema.h"
-#include "map/coarsen.h"
+#include "map/map_scale_builder.h"
 
 namespace gaussmap::detail {
 namespace {
@@ -59,21 +59,21 @@ Piece withEachCellOnce(const Piece& piece) {
 }
 
 /// Appends the cells in key order.
-void appendInOrder(CellBatch& batch, const Piece& piece, const MapOptions& options, int scale) {
+void appendInOrder(MapScaleBuilder<3>& cells, std::vector<double>& areas, const Piece& piece, const MapOptions& options,
+                   int scale) {
   std::vector<std::size_t> first(piece.keys.size() + 1, 0);
   for (std::size_t i = 0; i < piece.counts.size(); ++i) first[i + 1] = first[i] + piece.counts[i];
   for (const std::uint32_t from : keyOrder<3>(piece.keys, options.ratio, options.scales - 1 - scale)) {
-    batch.cells.keys.push_back(piece.keys[from]);
+    cells.addCell(piece.keys[from]);
     if (scale == 0) {
-      batch.cells.moments.push_back(piece.moments[from]);
-      batch.areas.push_back(1.0);
+      cells.addMoments(piece.moments[from]);
+      areas.push_back(1.0);
       continue;
     }
     for (std::size_t i = first[from]; i < first[from + 1]; ++i) {
-      batch.cells.gaussians.push_back(piece.gaussians[i]);
-      batch.areas.push_back(piece.areas[i]);
+      cells.addGaussian(piece.gaussians[i]);
+      areas.push_back(piece.areas[i]);
     }
-    batch.cells.first_gaussian.push_back(static_cast<std::uint32_t>(batch.cells.gaussians.size()));
   }
 }
 
@@ -142,15 +142,16 @@ CellBatch SpilledCells::load(const std::vector<CellKey<3>>& tiles, int threads) 
     if (pieces_.at(tiles[i]).size() > 1 && scale_ == 0) pieces[i] = withEachCellOnce(pieces[i]);
   });
   CellBatch batch;
-  if (scale_ > 0) batch.cells.first_gaussian.push_back(0);
+  MapScaleBuilder<3> cells;
   for (std::size_t i = 0; i < tiles.size(); ++i) {
     std::vector<SpillFile::Span>& spans = pieces_.at(tiles[i]);
     if (spans.size() > 1 && scale_ == 0) spans = {file_.append(pieces[i].bytes())};
-    appendInOrder(batch, pieces[i], options_, scale_);
+    appendInOrder(cells, batch.areas, pieces[i], options_, scale_);
     batch.tiles.push_back(tiles[i]);
-    batch.tile_end.push_back(batch.cells.keys.size());
+    batch.tile_end.push_back(cells.cells());
     pieces[i] = {};
   }
+  batch.cells = cells.take();
   return batch;
 }
 

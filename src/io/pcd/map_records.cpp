@@ -13,6 +13,7 @@
 #include "gaussmap/io/pcd/map_pcd.h"
 #include "map/link_cells.h"
 #include "map/map_origin.h"
+#include "map/map_scale_builder.h"
 
 namespace gaussmap {
 using namespace detail;
@@ -87,11 +88,11 @@ using CellGroups = std::map<CellKey<3>, CellGroup>;
 
 /// The nearest cluster of the cell above, means about the centre of the parent.
 std::size_t nearestParent(Gaussian<3> child, const Vector<3>& centre_in_parent,
-                          const std::vector<Gaussian<3>>& clusters, std::size_t first, std::size_t last) {
+                          const std::vector<Gaussian<3>>& clusters, IndexRange among) {
   child.mean += centre_in_parent;
-  std::size_t best = first;
+  std::size_t best = among.first;
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = first; i < last; ++i) {
+  for (std::size_t i = among.first; i < among.last; ++i) {
     const double divergence = klDivergence<3>(child, clusters[i]);
     if (divergence < least) {
       least = divergence;
@@ -155,26 +156,29 @@ GaussianMap<3> fromRecords(const GaussianRecords& all) {
     const CellGroups& groups = cells[static_cast<std::size_t>(s)];
     std::vector<CellKey<3>> keys;
     for (const auto& [key, group] : groups) keys.push_back(key);
-    scale.first_gaussian.push_back(0);
+    MapScaleBuilder<3> builder;
     for (const std::uint32_t from : keyOrder<3>(keys, options.ratio, options.scales - 1 - s)) {
       const CellGroup& group = groups.at(keys[from]);
-      scale.keys.push_back(keys[from]);
-      scale.gaussians.insert(scale.gaussians.end(), group.gaussians.begin(), group.gaussians.end());
-      if (occupancy) scale.log_odds.insert(scale.log_odds.end(), group.log_odds.begin(), group.log_odds.end());
-      scale.first_gaussian.push_back(static_cast<std::uint32_t>(scale.gaussians.size()));
+      builder.addCell(keys[from]);
+      for (const Gaussian<3>& gaussian : group.gaussians) builder.addGaussian(gaussian);
+      for (const float log_odds : group.log_odds)
+        if (occupancy) builder.addLogOdds(log_odds);
     }
+    scale = builder.take();
     if (s == 0) continue;
     MapScale<3>& finer = scales[static_cast<std::size_t>(s) - 1];
     scale.first_child = linkCells<3>(finer.keys, scale.keys, grid, s);
-    for (std::size_t cell = 0; cell < scale.keys.size(); ++cell)
-      for (std::size_t child = scale.first_child[cell]; child < scale.first_child[cell + 1]; ++child)
-        for (std::size_t i = finer.first_gaussian[child]; i < finer.first_gaussian[child + 1]; ++i)
-          finer.parent.push_back(static_cast<std::uint32_t>(
-              nearestParent(finer.gaussians[i], grid.centreInParent(finer.keys[child], s - 1), scale.gaussians,
-                            scale.first_gaussian[cell], scale.first_gaussian[cell + 1])));
+    for (std::size_t cell = 0; cell < scale.keys.size(); ++cell) {
+      const IndexRange clusters = gaussiansOf(scale, cell);
+      for (std::size_t child = scale.first_child[cell]; child < scale.first_child[cell + 1]; ++child) {
+        const IndexRange range = gaussiansOf(finer, child);
+        const Vector<3> centre = grid.centreInParent(finer.keys[child], s - 1);
+        for (std::size_t i = range.first; i < range.last; ++i)
+          finer.parent.push_back(
+              static_cast<std::uint32_t>(nearestParent(finer.gaussians[i], centre, scale.gaussians, clusters)));
+      }
+    }
   }
-  for (MapScale<3>& scale : scales)
-    if (scale.gaussians.size() == scale.keys.size()) scale.first_gaussian.clear();
   return GaussianMap<3>(options, std::move(scales));
 }
 

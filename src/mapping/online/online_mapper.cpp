@@ -10,6 +10,7 @@
 
 #include "core/accept_points.h"
 #include "core/check.h"
+#include "map/map_scale_builder.h"
 #include "mapping/moving/check_options.h"
 #include "mapping/online/online_state.h"
 
@@ -204,7 +205,7 @@ GaussianMap<D> OnlineMapper<D>::State::freeze() {
   std::vector<std::uint32_t> order;   // slots of the scale above, in key order
   std::vector<std::uint32_t> starts;  // first Gaussian of each of its slots
   for (int scale = top; scale >= 0; --scale) {
-    MapScale<D>& out = scales[static_cast<std::size_t>(scale)];
+    MapScaleBuilder<D> out;
     std::vector<std::uint32_t> here;
     if (scale == top) {
       for (std::uint32_t i = 0; i < cells.slots(top); ++i)
@@ -223,23 +224,20 @@ GaussianMap<D> OnlineMapper<D>::State::freeze() {
       first_child.push_back(static_cast<std::uint32_t>(here.size()));
     }
     std::vector<std::uint32_t> own_starts(cells.slots(scale));
-    std::uint32_t count = 0;
     for (const std::uint32_t i : here) {
       const OnlineCell<D>& cell = cells.cell(i, scale);
-      out.keys.push_back(cell.key);
-      if (scale > 0) out.first_gaussian.push_back(count);
-      own_starts[i] = count;
-      count += static_cast<std::uint32_t>(cell.clusters.size());
+      out.addCell(cell.key);
+      own_starts[i] = static_cast<std::uint32_t>(out.gaussians());
       for (const OnlineCluster<D>& cluster : cell.clusters) {
         if (scale == 0 && exact)
-          out.moments.push_back(cells.moments(i));
+          out.addMoments(cells.moments(i));
         else
-          out.gaussians.push_back(cluster.gaussian);
-        out.log_odds.push_back(cluster.log_odds);
-        if (scale < top) out.parent.push_back(starts[cell.parent] + cluster.parent);
+          out.addGaussian(cluster.gaussian);
+        out.addLogOdds(cluster.log_odds);
+        if (scale < top) out.addParent(starts[cell.parent] + cluster.parent);
       }
     }
-    if (scale > 0) out.first_gaussian.push_back(count);
+    scales[static_cast<std::size_t>(scale)] = out.take();
     order = std::move(here);
     starts = std::move(own_starts);
   }

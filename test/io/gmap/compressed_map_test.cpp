@@ -29,9 +29,9 @@ TEST_F(MapFile, GivesBackEveryBitOfACompressedMap) {
     const GaussianMapOctree map = build<3>(randomCloud<3>(3000, 25), {0.1, ratio, 3, 0.0});
     ASSERT_TRUE(thinned(map).isCompressed());
     expectRoundTrip<3>(thinned(map));
-    expectRoundTrip<3>(thinned(refine<3>(map)));
-    expectRoundTrip<3>(bare(refine<3>(map)));
-    expectRoundTrip<3>(compress(refine<3>(map), 0.1));
+    expectRoundTrip<3>(thinned(refine<3>(map).map));
+    expectRoundTrip<3>(bare(refine<3>(map).map));
+    expectRoundTrip<3>(compress(refine<3>(map).map, 0.1));
   }
   expectRoundTrip<2>(thinned(build<2>(randomCloud<2>(3000, 26), {0.07, 3, 4, 0.0})));
 }
@@ -65,7 +65,7 @@ TEST_F(MapFile, MayLackChildrenButNoParent) {
 }
 
 TEST_F(MapFile, AsPcdGivesBackACompressedMapButForFloats) {
-  const GaussianMapOctree map = thinned(refine<3>(build<3>(randomCloud<3>(3000, 29), {0.1, 3, 3, 0.0})));
+  const GaussianMapOctree map = thinned(refine<3>(build<3>(randomCloud<3>(3000, 29), {0.1, 3, 3, 0.0})).map);
   const auto path = directory_.path() / "small.pcd";
   saveMapPcd(map, path);
   const GaussianMapOctree got = loadMapPcd(path);
@@ -81,7 +81,7 @@ TEST_F(MapFile, AsPcdGivesBackACompressedMapButForFloats) {
 }
 
 TEST_F(MapFile, AsPcdWithoutItsFinestScaleIsACoarserMap) {
-  const GaussianMapOctree map = bare(refine<3>(build<3>(randomCloud<3>(500, 30), {0.1, 3, 3, 0.0})));
+  const GaussianMapOctree map = bare(refine<3>(build<3>(randomCloud<3>(500, 30), {0.1, 3, 3, 0.0})).map);
   const auto path = directory_.path() / "bare.pcd";
   saveMapPcd(map, path);
   const GaussianMapOctree got = loadMapPcd(path);

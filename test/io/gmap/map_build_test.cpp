@@ -6,6 +6,7 @@
 
 #include "clustering/undo_merges.h"
 #include "gaussmap/io/gmap/build_map_file.h"
+#include "gaussmap/io/gmap/map_history.h"
 #include "gaussmap/io/pcd/pcd_writer.h"
 #include "gaussmap/io/scans/pcd_scans.h"
 #include "io/gmap/gain_threshold.h"
@@ -40,15 +41,15 @@ class BuiltFile : public MapFile {
     const std::vector<PcdScan> scans = scansOf(points, 7);
     AccumulateOptions reading;
     reading.resolution = map.resolution;
-    RefineOptions refining;
-    refining.budget = budget;
     const MapMetadata metadata = {{"history", "[]"}};
     const fs::path expected = directory_.path() / "expected.gmap";
-    saveMap<3>(refine<3>(build<3>(accumulateScans(PcdScans(scans, ScanFrame::Map), reading).moments, map), refining), expected,
-               metadata, {true, 3, 0});
+    saveMap<3>(
+        refine<3>(build<3>(accumulateScans(PcdScans(scans, ScanFrame::Map), reading).moments, map), PerCell{budget})
+            .map,
+        expected, metadata, {true, 3, 0});
     BuildMapFileOptions options;
     options.max_memory = max_memory;
-    options.refine = refining;
+    options.budget = PerCell{budget};
     options.refine.threads = reading.threads = threads;
     options.save = {true, 3, threads};
     const BuiltMapFile built = buildMapFile(
@@ -108,15 +109,19 @@ TEST_F(BuiltFile, LeavesNothingBehind) {
         },
         options);
   };
-  BuildMapFileOptions insert, little, finished, low;
+  BuildMapFileOptions insert, little, finished, low, bytes, curves;
   insert.refine.method = RefineMethod::Insert;
   EXPECT_THROW(attempt(reading, insert), std::invalid_argument);
   little.max_memory = kLeastBuildMemory - 1;
   EXPECT_THROW(attempt(reading, little), std::invalid_argument);
   finished.save.precision = Precision::Finished;
   EXPECT_THROW(attempt(reading, finished), std::invalid_argument);
-  low.refine.budget = 0.5;
+  low.budget = PerCell{0.5};
   EXPECT_THROW(attempt(reading, low), std::invalid_argument);
+  bytes.budget = maxFileBytes(100000);
+  EXPECT_THROW(attempt(reading, bytes), std::invalid_argument);
+  curves.refine.curves.emplace();
+  EXPECT_THROW(attempt(reading, curves), std::invalid_argument);
   AccumulateOptions other = reading;
   other.resolution = 0.2;
   EXPECT_THROW(attempt(other, {}), std::invalid_argument);

@@ -21,9 +21,7 @@
 namespace gaussmap::test {
 template <int D>
 GaussianMap<D> refined(const GaussianMap<D>& map) {
-  RefineOptions options;
-  options.budget = 2.5;
-  return refine<D>(map, options);
+  return refine<D>(map, PerCell{2.5}).map;
 }
 
 /// A map small enough for thousands of loads, with several tiles at two scales and several Gaussians in its cells.

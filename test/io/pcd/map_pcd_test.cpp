@@ -39,9 +39,7 @@ std::string messageOf(const std::function<void()>& action) {
 }
 
 GaussianMapOctree refined(const GaussianMapOctree& map) {
-  RefineOptions options;
-  options.budget = 2.5;
-  return refine<3>(map, options);
+  return refine<3>(map, PerCell{2.5}).map;
 }
 
 std::vector<Vector<3>> shifted(std::vector<Vector<3>> points, const Vector<3>& shift) {

@@ -95,9 +95,9 @@ TEST(OnlineMapper, EndsAsNearToThePointsAsTheBatchMapOfTheSameSize) {
   }
   all.addPoints(points);
   const GaussianMap<3> online = mapper.map();
-  RefineOptions same_size;
-  for (int s = 1; s < 3; ++s) same_size.max_gaussians[s] = online.gaussianCount(s);
-  const GaussianMap<3> batch = refine(build<3>(all, options.map), same_size);
+  MaxGaussians same_size;
+  for (int s = 1; s < 3; ++s) same_size.by_scale[s] = online.gaussianCount(s);
+  const GaussianMap<3> batch = refine(build<3>(all, options.map), same_size).map;
   const Reference truth(points);
   for (int s = 1; s < 3; ++s) {
     EXPECT_EQ(online.gaussianCount(s), batch.gaussianCount(s));

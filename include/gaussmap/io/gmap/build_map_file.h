@@ -17,7 +17,8 @@ inline constexpr std::size_t kLeastBuildMemory = std::size_t{1} << 20;
 struct BuildMapFileOptions {
   std::size_t max_memory = std::size_t{1} << 30;  ///< about so much is used beside the scans that are read and what the
                                                   ///< program takes anyhow, >= kLeastBuildMemory [bytes]
-  RefineOptions refine;                           ///< by agglomeration; its threads are those of the whole build
+  Budget budget = PerCell{};                      ///< or MaxGaussians
+  RefineOptions refine;  ///< by agglomeration, without curves; its threads are those of the whole build
   SaveOptions save;
 };
 

@@ -11,11 +11,11 @@
 namespace gaussmap::detail {
 
 /// Adds points to a part of a map that is closed: it holds everything under its coarsest cells. Finest sums add
-/// exactly. Coarse cells with new points under them are made anew from all that is under them, by agglomeration as in
+/// exactly. Coarse cells with new points under them are rebuilt from all that is under them, by agglomeration as in
 /// refine(); all other cells stay as they are. With `occupancy`, finest cells keep their log-odds, new ones have
-/// kMaxOccupancy, and coarse cells made anew follow.
-/// `mostGaussians(scale, cells)` = how many Gaussians a coarse scale of the part may have if it has so many cells; what
-/// the cells that stay leave of them goes to the others, at least one each.
+/// kMaxOccupancy, and rebuilt coarse cells follow.
+/// `mostGaussians(scale, cells)` = how many Gaussians a coarse scale of the part may have if it has so many cells. The
+/// rebuilt cells share what the other cells leave of them, at least one each.
 template <int D>
 GaussianMap<D> updatePart(const GaussianMap<D>& old, const MomentGrid<D>& added, bool occupancy,
                           const RefineOptions& options,

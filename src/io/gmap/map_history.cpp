@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gaussmap/io/gmap/map_history.h"
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <utility>
+#include <variant>
+
+namespace gaussmap {
+namespace {
+
+using HistoryJson = nlohmann::ordered_json;
+
+/// File names need not be UTF-8, as JSON must be: their other bytes are replaced.
+std::string textOf(const HistoryJson& json) {
+  return json.dump(-1, ' ', false, HistoryJson::error_handler_t::replace);
+}
+
+HistoryJson parseObject(const std::string& text) {
+  HistoryJson json = HistoryJson::parse(text, nullptr, false);
+  if (!json.is_object()) throw std::invalid_argument("a step of the history must be a JSON object, not: " + text);
+  return json;
+}
+
+/// Writes the budget into a step.
+struct BudgetWriter {
+  HistoryJson& step;
+
+  void operator()(const PerCell& budget) const { step["budget"] = budget.gaussians; }
+  void operator()(const MaxGaussians& budget) const {
+    HistoryJson limits = HistoryJson::array();
+    for (const auto& [scale, most] : budget.by_scale)
+      limits.push_back(std::to_string(scale) + "=" + std::to_string(most));
+    step["max_gaussians"] = limits;
+  }
+  void operator()(const MaxBytes& budget) const { step["max_bytes"] = budget.bytes; }
+  void operator()(const MaxError& budget) const { step["max_error"] = budget.metres; }
+};
+
+/// `own` with the values that `details` has for its members, behind the other members of `details`; nulls are left out.
+std::string withDetails(const HistoryJson& own, const std::string& details) {
+  const HistoryJson given = parseObject(details);
+  HistoryJson step = HistoryJson::object();
+  for (const auto& [name, value] : given.items())
+    if (!own.contains(name)) step[name] = value;
+  for (const auto& [name, value] : own.items()) {
+    if (given.contains(name))
+      step[name] = given[name];
+    else if (!value.is_null())
+      step[name] = value;
+  }
+  return textOf(step);
+}
+
+HistoryJson wordOf(MergeCost cost) {
+  return cost == MergeCost::Runnalls ? HistoryJson("runnalls") : HistoryJson();
+}
+
+}  // namespace
+
+std::string refineStep(const Budget& budget, const RefineOptions& options, const std::string& details) {
+  const bool inserts = options.method == RefineMethod::Insert;
+  HistoryJson own = {{"method", inserts ? "insert" : "agglomerate"}, {"cost", wordOf(options.merge_cost)}};
+  std::visit(BudgetWriter{own}, budget);
+  if (inserts) {
+    const RefineOptions usual;
+    own["seed"] = options.seed;
+    if (options.queue != usual.queue) own["queue"] = options.queue;
+    if (options.max_swaps != usual.max_swaps) own["max_swaps"] = options.max_swaps;
+    if (options.seed_rule == ClusterSeed::Datum) own["seed_rule"] = "datum";
+  }
+  return withDetails(own, details);
+}
+
+std::string simplifyStep(const Budget& budget, const SimplifyOptions& options, const std::string& details) {
+  HistoryJson own = {{"cost", wordOf(options.merge_cost)}};
+  std::visit(BudgetWriter{own}, budget);
+  return withDetails(own, details);
+}
+
+void recordStep(MapMetadata& metadata, const std::string& step) {
+  HistoryJson history = HistoryJson::array();
+  const auto entry = metadata.find(kHistoryEntry);
+  if (entry != metadata.end()) {
+    HistoryJson old = HistoryJson::parse(entry->second, nullptr, false);
+    if (old.is_array()) history = std::move(old);
+  }
+  history.push_back(parseObject(step));
+  metadata[kHistoryEntry] = textOf(history);
+}
+
+void recordCurves(MapMetadata& metadata, const std::vector<ErrorCurve>& curves) {
+  metadata.erase(kCurvesEntry);
+  if (curves.empty()) return;
+  HistoryJson all = HistoryJson::array();
+  for (const ErrorCurve& curve : curves) {
+    HistoryJson points = HistoryJson::array();
+    for (const ErrorPoint& point : curve.points)
+      points.push_back({{"gaussians", point.gaussians}, {"q99", point.q99}, {"q95", point.q95}, {"mean", point.mean}});
+    all.push_back({{"scale", curve.scale}, {"points", points}});
+  }
+  metadata[kCurvesEntry] = all.dump();
+}
+
+template <int D>
+void saveMap(const RefineResult<D>& result, const std::filesystem::path& path, MapMetadata metadata,
+             const SaveOptions& options) {
+  recordCurves(metadata, result.curves);
+  saveMap<D>(result.map, path, metadata, options);
+}
+
+template <int D>
+std::uintmax_t savedSize(const RefineResult<D>& result, MapMetadata metadata, const SaveOptions& options) {
+  recordCurves(metadata, result.curves);
+  return savedSize<D>(result.map, metadata, options);
+}
+
+MaxBytes maxFileBytes(std::uintmax_t bytes, const MapMetadata& metadata, const SaveOptions& options) {
+  return {bytes,
+          [metadata, options](const RefineResult<3>& result) { return savedSize<3>(result, metadata, options); }};
+}
+
+#define GAUSSMAP_INSTANTIATE(D)                                                                                    \
+  template void saveMap<D>(const RefineResult<D>&, const std::filesystem::path&, MapMetadata, const SaveOptions&); \
+  template std::uintmax_t savedSize<D>(const RefineResult<D>&, MapMetadata, const SaveOptions&);
+GAUSSMAP_INSTANTIATE(2)
+GAUSSMAP_INSTANTIATE(3)
+#undef GAUSSMAP_INSTANTIATE
+
+}  // namespace gaussmap

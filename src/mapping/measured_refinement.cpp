@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mapping/measured_refinement.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "core/quantile.h"
+#include "map/boxes_of_parents.h"
+#include "map/map_scale_builder.h"
+#include "map/member_boxes.h"
+#include "map/sample_within.h"
+#include "mapping/budget.h"
+#include "mapping/refine_scales.h"
+#include "points/nearest_distances.h"
+
+namespace gaussmap::detail {
+namespace {
+
+/// Measures cuts of coarse scales against samples of the finest, one scale after the other from the finest up.
+class CutMeter {
+ public:
+  CutMeter(const GaussianMap<3>& map, const ErrorSampling& sampling, int threads)
+      : grid_(map.grid()), sampling_(sampling), threads_(threads), finer_boxes_(memberBoxes<3>(map, 0)) {
+    const SampleOptions data{sampling.data, 1, SampleShare::Mass, sampling.seed, threads};
+    if (!map.empty()) data_ = sampleMap(map, 0, data).points;
+  }
+
+  ErrorPoint measure(const ScalePair<3>& pair, const ClusterCut& cut) const {
+    const std::vector<Gaussian<3>> gaussians = clusterGaussians(pair, cut, threads_);
+    const std::vector<Box<3>> boxes = boxesOfParents<3>(finer_boxes_, cut.cluster, gaussians.size());
+    MapScaleBuilder<3> alone;  // the scale as a map of its own: its samples need
+                               // nothing else, but its key order is another
+    std::vector<Box<3>> alone_boxes;
+    for (const std::uint32_t from : keyOrder<3>(pair.coarse.keys, 2, 0)) {
+      alone.addCell(pair.coarse.keys[from]);
+      for (std::size_t i = cut.first[from]; i < cut.first[from + 1]; ++i) {
+        alone.addGaussian(gaussians[i]);
+        alone_boxes.push_back(boxes[i]);
+      }
+    }
+    const GaussianMap<3> map({grid_.side(pair.finer_scale + 1), 2, 1, grid_.options().noise}, {alone.take()});
+    const SampleOptions options{sampling_.samples, 1, SampleShare::Volume, sampling_.seed, threads_};
+    const std::vector<Vector<3>> samples = sampleWithin<3>(map, 0, alone_boxes, options).points;
+    std::vector<double> distances = nearestDistances(samples, data_, threads_);
+    const double sum = std::accumulate(distances.begin(), distances.end(), 0.0);
+    const double mean = sum / static_cast<double>(distances.size());
+    const double q99 = percentile(distances, 99);
+    return {gaussians.size(), q99, percentile(distances, 95), mean};
+  }
+
+  /// This cut becomes the finer scale of the next one.
+  void choose(const ClusterCut& cut) { finer_boxes_ = boxesOfParents<3>(finer_boxes_, cut.cluster, cut.clusters()); }
+
+ private:
+  const Grid<3> grid_;
+  const ErrorSampling sampling_;
+  const int threads_;
+  std::vector<Vector<3>> data_;
+  std::vector<Box<3>> finer_boxes_;  // memberBoxes() of the finer scale
+};
+
+/// The curve of a scale at the multiples asked for, as far as there are Gaussians.
+ErrorCurve curveOf(const CutMeter& meter, const ScalePair<3>& pair, const ScaleClusters& clusters,
+                   const std::vector<double>& multiples) {
+  ErrorCurve curve{pair.finer_scale + 1, {}};
+  const std::size_t most = clusters.mostExtra();
+  for (const double multiple : multiples) {
+    const std::size_t extra =
+        std::min(extraGaussians(PerCell{multiple}, curve.scale, pair.cells(), pair.finer.gaussianCount()), most);
+    const ErrorPoint point = meter.measure(pair, clusters.cut(extra));
+    if (curve.points.empty() || point.gaussians > curve.points.back().gaussians) curve.points.push_back(point);
+    if (extra == most) break;
+  }
+  return curve;
+}
+
+/// Curves that are longer than any true ones when they are written in decimals.
+std::vector<ErrorCurve> widestCurves(int scales, const CurveOptions& options) {
+  constexpr double kLong = 1.2345678901234567e-100;
+  std::vector<ErrorCurve> curves;
+  for (int s = 1; s < scales; ++s)
+    curves.push_back({s, {options.multiples.size(), {std::numeric_limits<std::uint32_t>::max(), kLong, kLong, kLong}}});
+  return curves;
+}
+
+/// As few Gaussians beyond one per cell as reach the error, to half a percent; by bisection.
+std::size_t extraForError(const CutMeter& meter, const ScalePair<3>& pair, const ScaleClusters& clusters,
+                          double max_error, std::vector<NotReached>& not_reached) {
+  const auto error = [&](std::size_t extra) { return meter.measure(pair, clusters.cut(extra)).q95; };
+  std::size_t low = 0, high = clusters.mostExtra();  // error(low) too large,
+                                                     // error(high) small enough
+  const double least = error(high);
+  if (least > max_error) {
+    not_reached.push_back({pair.finer_scale + 1, least});
+    return high;
+  }
+  if (error(low) <= max_error) return low;
+  while (high - low > 1 + high / 200) {
+    const std::size_t middle = low + (high - low) / 2;
+    (error(middle) <= max_error ? high : low) = middle;
+  }
+  return high;
+}
+
+}  // namespace
+
+RefineResult<3> refineMeasured(GaussianMap<3> map, const Budget& budget, const RefineOptions& options) {
+  const auto* max_error = std::get_if<MaxError>(&budget);
+  CutMeter meter(map, max_error != nullptr ? max_error->sampling : options.curves->sampling, options.threads);
+  RefineResult<3> result;
+  result.map = refineScales<3>(std::move(map), [&](const ScalePair<3>& pair, const std::vector<double>& areas) {
+    const ScaleClusters clusters = ScaleClusters::under(pair, areas, options.merge_cost, options.threads);
+    if (options.curves) result.curves.push_back(curveOf(meter, pair, clusters, options.curves->multiples));
+    const std::size_t extra =
+        max_error != nullptr ? extraForError(meter, pair, clusters, max_error->metres, result.not_reached)
+                             : extraGaussians(budget, pair.finer_scale + 1, pair.cells(), pair.finer.gaussianCount());
+    ClusterCut cut = clusters.cut(extra);
+    meter.choose(cut);
+    setClusters(pair, std::move(cut), options.threads);
+  });
+  return result;
+}
+
+RefineResult<3> refineToBytes(GaussianMap<3> map, const MaxBytes& budget, const RefineOptions& options) {
+  std::size_t fewest_cells = map.cellCount(0);
+  for (int s = 1; s < map.scales(); ++s) fewest_cells = std::min(fewest_cells, map.cellCount(s));
+  const double most = std::max(1.0, static_cast<double>(map.gaussianCount(0)) / std::max(1.0, double(fewest_cells)));
+
+  // True curves take longer than all the rest: they are made last, and only for the multiple that is chosen. Only the
+  // finest scale counts, so that the map of one trial serves for the next one.
+  RefineResult<3> trial{std::move(map), {}, {}};
+  if (options.curves) trial.curves = widestCurves(trial.map.scales(), *options.curves);
+  double last = 0.0;
+  const double fits = largestMultiple(most, budget.bytes, [&](double multiple) {
+                        trial.map = refineByCount(std::move(trial.map), PerCell{multiple}, options);
+                        last = multiple;
+                        return budget.size_of(trial);
+                      }).multiple;
+  if (!options.curves && last == fits && fits > 1.0) return trial;
+  double step = kBytePrecision;
+  for (double multiple = fits; multiple > 1.0;
+       multiple /= step, step *= step) {  // once, unless the curves are too much
+    RefineResult<3> best = refine<3>(std::move(trial.map), PerCell{multiple}, options);
+    if (budget.size_of(best) <= budget.bytes) return best;
+    trial.map = std::move(best.map);
+  }
+  RefineResult<3> one_per_cell = refine<3>(std::move(trial.map), PerCell{1.0}, options);
+  requireRoom(budget.bytes, budget.size_of(one_per_cell));
+  return one_per_cell;
+}
+
+}  // namespace gaussmap::detail

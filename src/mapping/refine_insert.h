@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+
+#include "gaussmap/mapping/refine.h"
+#include "mapping/scale_clusters.h"
+
+namespace gaussmap::detail {
+
+/// Refines a coarse scale by RefineMethod::Insert: at most `extra` clusters more than one per cell.
+template <int D>
+void refineByInsertion(const ScalePair<D>& scale, std::size_t extra, const RefineOptions& options);
+
+}  // namespace gaussmap::detail
