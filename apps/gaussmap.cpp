@@ -5,11 +5,12 @@
 #include <iostream>
 #include <new>
 
-#include "common.h"
-#include "io/files/signals.h"
+#include "commands/commands.h"
+#include "common/options.h"
+#include "common/signals.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap::app {
-using namespace detail;
 
 namespace {
 
@@ -44,9 +45,10 @@ int complain(std::string text, int code) {
 
 int main(int argc, char** argv) {
   using namespace gaussmap::app;
-  gaussmap::detail::handleSignals("gaussmap");
+  handleSignals("gaussmap");
   CLI::App app("Compact multi-scale Gaussian maps from range scans", "gaussmap");
   app.set_version_flag("--version", "gaussmap " GAUSSMAP_VERSION);
+  app.set_help_all_flag("--help-all", "show all options, and explanations");
   app.require_subcommand(1);
   app.footer("Example: gaussmap pcd2map scans/ -o street.gmap && gaussmap info street.gmap");
   addPcd2map(app);

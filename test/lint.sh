@@ -14,7 +14,7 @@ clang-format --dry-run -Werror "${all[@]}"
 echo "clang-format: ${#all[@]} files as they should be"
 
 cppcheck --std=c++17 --language=c++ --enable=warning,performance,portability --inline-suppr \
-  --suppressions-list=.cppcheck --error-exitcode=1 -I include -I src --quiet -j 2 src apps include
+  --suppressions-list=.cppcheck --error-exitcode=1 -I include -I src -I apps --quiet -j 2 src apps include
 echo "cppcheck: clean"
 [[ ${1:-} != --quick ]] || exit 0
 
@@ -24,6 +24,6 @@ cmake -S . -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER
   -DCMAKE_CXX_COMPILER_LAUNCHER="$launcher" -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DGAUSSMAP_BUILD_PCL=OFF \
   -DGAUSSMAP_BUILD_VIEWER=OFF -DGAUSSMAP_BUILD_TESTS=OFF >/dev/null
 sources=("$@")
-((${#sources[@]} > 0)) || mapfile -t sources < <(git ls-files 'src/*.cpp' 'apps/*.cpp' ':!src/pcl' ':!src/viewer' ':!apps/view_main.cpp')
+((${#sources[@]} > 0)) || mapfile -t sources < <(git ls-files 'src/*.cpp' 'apps/*.cpp' ':!src/pcl' ':!src/viewer' ':!apps/viewer')
 printf '%s\0' "${sources[@]}" | xargs -0 -P 2 -n 4 clang-tidy -p "$folder" --quiet --warnings-as-errors='*' 2>/dev/null
 echo "clang-tidy: ${#sources[@]} sources, clean"

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/json.h"
+#include "gaussmap/mapping/error_curve.h"
+
+namespace CLI {
+class App;
+}
+
+namespace gaussmap::app {
+
+/// How many Gaussians the coarse scales may have: the same options for every command that refines.
+struct BudgetInput {
+  double budget = RefineOptions().budget;
+  std::vector<std::string> max_gaussians;  // "N" or "SCALE=N"
+  std::string max_bytes;                   // with suffix k, M, G
+  double max_error = 0.0;                  // [m], 0: not given
+  std::string method = "agglomerate";
+  std::optional<std::string> cost;   // of merges, --method agglomerate only
+  std::optional<std::string> cells;  // which cells are served first, --method insert only
+  RefineOptions refine;              // seed and threads
+  bool curves = true;                // measure what other budgets would give
+};
+void addBudgetOptions(CLI::App& command, BudgetInput& input);
+/// Two parts of these, for commands that merge clusters only: the budgets without a default, and --cost.
+void addLimitOptions(CLI::App& command, BudgetInput& input);
+void addCostOption(CLI::App& command, BudgetInput& input);
+
+/// A whole number > 0, with an optional suffix k, M or G (powers of 1000) behind it. Throws UsageError, naming the
+/// option.
+std::uintmax_t amountOf(const std::string& option, std::string_view text, bool suffix);
+
+/// Checks the words that need no map. Throws UsageError.
+void checkBudget(const BudgetInput& input);
+
+/// --max-gaussians by scale: "N" is for every coarse scale (of a map of one scale: that), "SCALE=N" for one, and
+/// stronger. Throws UsageError for scales below `first_scale`, and for fewer than a scale has cells.
+std::map<int, std::size_t> maxGaussians(const BudgetInput& input, const GaussianMap<3>& map, int first_scale);
+/// --max-bytes, which is given. Throws UsageError.
+std::uintmax_t maxBytes(const BudgetInput& input);
+MergeCost mergeCost(const BudgetInput& input);
+
+/// The map within its budget. Adds the error curves to the metadata, and `step`, completed by the budget, to the
+/// history; warns on stderr of scales that cannot reach --max-error.
+GaussianMap<3> refineWithin(GaussianMap<3> map, const BudgetInput& input, MapMetadata& metadata, Json step);
+
+}  // namespace gaussmap::app

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// gaussmap diff A B: what is new, gone, changed in B.
+#include <array>
+#include <cstdio>
+#include <memory>
+
+#include "commands/commands.h"
+#include "common/json.h"
+#include "common/options.h"
+#include "common/report.h"
+#include "gaussmap/editing/diff_maps.h"
+#include "gaussmap/io/pcd/map_pcd.h"
+#include "gaussmap/io/pcd/pcd_writer.h"
+
+namespace gaussmap::app {
+namespace {
+
+struct DiffCommand {
+  std::string first, second;
+  std::string output;
+  bool force = false, json = false;
+  DiffOptions diff;
+};
+
+const Help kDiffHelp = {
+    "Compare two maps of the same place: what is new, gone or changed",
+    "gaussmap diff monday.gmap tuesday.gmap -o changes.pcd --level 0.001",
+    R"(The output holds every Gaussian of the second map, and those of the first map that are gone, with the fields
+x y z covariance[6] weight p_value label. Labels: 0 the same, or too few points to decide; 1 new; 2 gone; 3 changed.
+What the sensors of the second map never observed counts as gone too. At refined scales, clusters can differ because
+the same surface was divided in another way: compare the finest scale.)"};
+
+/// A point of the file.
+struct Row {
+  std::array<float, 3> mean;
+  std::array<float, 6> covariance;
+  float weight, p_value;
+  std::uint32_t label;
+};
+
+Row rowOf(const GaussianMap<3>& map, std::size_t index, int s, const Eigen::Vector3d& origin, const Difference& one) {
+  const Gaussian<3> gaussian = map.gaussian(index, s);
+  const Eigen::Vector3f mean = (gaussian.mean - origin).cast<float>();
+  const Eigen::Matrix3f cov = gaussian.cov.cast<float>();
+  return {{mean.x(), mean.y(), mean.z()},
+          {cov(0, 0), cov(0, 1), cov(0, 2), cov(1, 1), cov(1, 2), cov(2, 2)},
+          static_cast<float>(gaussian.weight),
+          static_cast<float>(one.p_value),
+          static_cast<std::uint32_t>(one.change)};
+}
+
+/// All Gaussians of the second map, and those of the first that are gone.
+void writeDiff(const GaussianMap<3>& first, const GaussianMap<3>& second, const MapDiff& diff, int s,
+               const std::string& path) {
+  const Eigen::Vector3d origin = toRecords(second, s).origin;
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < diff.second.size(); ++i) rows.push_back(rowOf(second, i, s, origin, diff.second[i]));
+  for (std::size_t i = 0; i < diff.first.size(); ++i)
+    if (diff.first[i].change == Change::Gone) rows.push_back(rowOf(first, i, s, origin, diff.first[i]));
+  const Row none{};
+  const Row& row = rows.empty() ? none : rows.front();
+  const std::vector<PcdOutput> fields = {
+      pcdOutput("x", &row.mean[0], 1, sizeof(Row)),     pcdOutput("y", &row.mean[1], 1, sizeof(Row)),
+      pcdOutput("z", &row.mean[2], 1, sizeof(Row)),     pcdOutput("covariance", row.covariance.data(), 6, sizeof(Row)),
+      pcdOutput("weight", &row.weight, 1, sizeof(Row)), pcdOutput("p_value", &row.p_value, 1, sizeof(Row)),
+      pcdOutput("label", &row.label, 1, sizeof(Row))};
+  writePcd(path, rows.size(), fields, Pose{origin, Pose::Rotation::Identity()});
+}
+
+void run(const DiffCommand& options) {
+  if (!options.output.empty()) {
+    requireExtension(options.output, ".pcd");
+    checkOutput({options.output, options.force}, {options.first, options.second});
+  }
+  const double start = now();
+  const GaussianMap<3> first = loadAnyMap(options.first), second = loadAnyMap(options.second);
+  const int s = options.diff.scale;
+  checkScale("--scale", s, first.scales(), options.first);
+  checkScale("--scale", s, second.scales(), options.second);
+  const MapDiff diff = diffMaps<3>(first, second, options.diff);
+  if (!options.output.empty()) writeDiff(first, second, diff, s, options.output);
+  const std::size_t none = diff.count(Change::None), fresh = diff.count(Change::New), gone = diff.count(Change::Gone),
+                    changed = diff.count(Change::Changed);
+  if (options.json) {
+    Json result = {{"first", options.first},
+                   {"second", options.second},
+                   {"scale", s},
+                   {"level", options.diff.level},
+                   {"gaussians", {first.gaussianCount(s), second.gaussianCount(s)}},
+                   {"same", none},
+                   {"new", fresh},
+                   {"gone", gone},
+                   {"changed", changed},
+                   {"seconds", now() - start}};
+    if (!options.output.empty()) result["output"] = options.output;
+    printJson(result);
+    return;
+  }
+  std::printf("%s -> %s, scale %d (%g m), level %g: %zu new, %zu gone, %zu changed, %zu the same\n",
+              options.first.c_str(), options.second.c_str(), s, first.grid().side(s), options.diff.level, fresh, gone,
+              changed, none);
+}
+
+}  // namespace
+
+void addDiff(CLI::App& app) {
+  auto options = std::make_shared<DiffCommand>();
+  CLI::App* command = addCommand(app, "diff", kDiffHelp);
+  command->add_option("first", options->first, "map (.gmap, or PCD of Gaussians)")->required();
+  command->add_option("second", options->second, "the later one, in the same frame and cells")->required();
+  command->add_option("-o,--output", options->output, "labelled Gaussians to write (.pcd)");
+  command->add_flag("--force", options->force, "replace an existing output");
+  command->add_option("--scale", options->diff.scale, "which scale, 0 = finest")
+      ->check(CLI::Range(0, 63))
+      ->capture_default_str();
+  command
+      ->add_option("--level", options->diff.level,
+                   "significance level: a change is reported if its p-value is at most this")
+      ->check(numberBetween(1e-12, 0.5))
+      ->capture_default_str();
+  rare(command->add_option("--points", options->diff.points,
+                           "how many points of one object count as independent at most; more find smaller movements, "
+                           "but also errors of the poses"))
+      ->check(numberBetween(1.0, 1e9))
+      ->capture_default_str();
+  addThreads(*command, options->diff.threads);
+  addJson(*command, options->json);
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace gaussmap::app

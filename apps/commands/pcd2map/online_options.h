@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "commands/budget.h"
+#include "common/usage.h"
+#include "gaussmap/mapping/online/online_mapper.h"
+
+namespace gaussmap::app {
+
+/// The options of pcd2map --online.
+struct OnlineInput {
+  bool on = false;
+  OnlineOptions options;
+  double no_return_is_free = 0.0;  // [m], 0: not given
+  bool keep = false;               // delete nothing
+  std::string stats;               // CSV file
+  std::string removed;             // PCD file
+};
+void addOnlineOptions(CLI::App& command, OnlineInput& input);
+
+/// Throws UsageError for options that on-line mapping does not have, or outputs that cannot be written. `map` is the
+/// main output.
+void checkOnline(const OnlineInput& input, const BudgetInput& budget, const Output& map,
+                 const std::vector<std::filesystem::path>& inputs);
+
+/// The options of the mapper, with those of all commands.
+OnlineOptions onlineOptions(const OnlineInput& input, const MapOptions& map, const BudgetInput& budget);
+
+}  // namespace gaussmap::app

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "gaussmap/mapping/accumulate_scans.h"
+#include "gaussmap/mapping/scan.h"
+
+namespace CLI {
+class App;
+}
+
+namespace gaussmap::app {
+
+/// Which clouds, and how they lie in the map: the same options for every command that reads scans.
+struct ScanInput {
+  std::vector<std::string> paths;
+  std::string poses;
+  std::string frame = "sensor";
+  double max_range = 0.0;  // 0: no limit
+};
+/// Adds --poses, --frame and --max-range; not the paths.
+void addScanOptions(CLI::App& command, ScanInput& input);
+
+/// Lists the scans, gives each its pose and diagnoses the poses; warnings go to stderr.
+std::vector<ScanSource> findScans(const ScanInput& input);
+AccumulateOptions accumulateOptions(const ScanInput& input, double resolution, int threads);
+/// All points of the scans in the map frame. Throws if there are none.
+std::vector<Vector<3>> readPoints(const ScanInput& input, int threads);
+
+/// Counts where the points of a scan go; those beyond the range become NaN.
+void sortOut(Scan& scan, const AccumulateOptions& reading, PointCounts& counts);
+
+/// "scan.pcd", or "scan.pcd and 4 more".
+std::string nameOf(const std::vector<ScanSource>& scans);
+
+}  // namespace gaussmap::app

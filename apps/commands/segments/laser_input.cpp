@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/segments/laser_input.h"
+
+#include <algorithm>
+
+#include "common/options.h"
+#include "common/report.h"
+
+#include "gaussmap/io/logs/carmen_log.h"
+#include "gaussmap/segments/planar_scan.h"
+
+namespace gaussmap::app {
+namespace {
+
+constexpr std::size_t kMostWarnings = 5;  // about one log
+
+LaserScans readLogs(const std::vector<std::string>& paths) {
+  LaserScans all;
+  for (const std::string& path : paths) {
+    const CarmenLog log = readCarmenLog(path);
+    const std::size_t shown = std::min(log.faults.size(), kMostWarnings);
+    for (std::size_t i = 0; i < shown; ++i)
+      warn(path + ": line " + std::to_string(log.faults[i].line) + " is left out: " + log.faults[i].what);
+    const std::size_t more = log.faults.size() - shown + log.more_faults;
+    if (more > 0) warn(path + ": " + std::to_string(more) + " more lines are left out");
+    for (std::size_t i = 0; i < log.scans.size(); ++i) {
+      all.scans.push_back(log.scans[i]);
+      all.names.push_back(std::filesystem::path(path).filename().string() + ":" + std::to_string(i));
+    }
+    all.files.emplace_back(path);
+  }
+  return all;
+}
+
+LaserScans readPcds(const LaserInput& input) {
+  PlanarScanOptions options;
+  if (input.scans.frame == "map") options.frame = ScanFrame::Map;
+  if (input.scans.max_range > 0.0) options.max_range = input.scans.max_range;
+  if (!input.slice.empty()) {
+    options.slice = true;
+    options.z_min = input.slice[0];
+    options.z_max = input.slice[1];
+    if (options.z_min > options.z_max) throw UsageError("--slice: the second height is below the first");
+  }
+  LaserScans all;
+  for (const ScanSource& source : findScans(input.scans)) {
+    all.scans.push_back(readPlanarScan(source, options));
+    all.names.push_back(source.path.filename().string());
+    all.files.push_back(source.path);
+  }
+  return all;
+}
+
+}  // namespace
+
+void addLaserOptions(CLI::App& command, LaserInput& input) {
+  command
+      .add_option("scans", input.scans.paths,
+                  "CARMEN logs (.log, .log.gz), or PCD scans of a planar laser, or directories of them")
+      ->required();
+  addScanOptions(command, input.scans);
+  command.add_option("--slice", input.slice, "use the points of 3-D scans between two heights of the map [m]")
+      ->expected(2)
+      ->check(numberBetween(-1e6, 1e6));
+  rare(command.add_option("--position-noise", input.position_noise, "standard deviation of the poses' x and y [m]"))
+      ->check(numberBetween(0.0, 100.0))
+      ->capture_default_str();
+  rare(command.add_option("--heading-noise", input.heading_noise, "standard deviation of the poses' heading [rad]"))
+      ->check(numberBetween(0.0, 1.0))
+      ->capture_default_str();
+}
+
+LaserScans readLaserScans(const LaserInput& input) {
+  const std::vector<std::string>& paths = input.scans.paths;
+  const auto logs =
+      std::count_if(paths.begin(), paths.end(), [](const std::string& path) { return isCarmenLogName(path); });
+  const bool are_logs = logs > 0;
+  if (are_logs && static_cast<std::size_t>(logs) < paths.size())
+    throw UsageError("logs and PCD scans cannot be mixed: make a map of one kind");
+  if (are_logs && (!input.slice.empty() || !input.scans.poses.empty() || input.scans.frame != "sensor"))
+    throw UsageError("--slice, --poses and --frame are for PCD scans: a log has planar scans with their poses");
+  LaserScans all = are_logs ? readLogs(paths) : readPcds(input);
+  for (LaserScan& scan : all.scans) {
+    if (are_logs && input.scans.max_range > 0.0) scan.max_range = std::min(scan.max_range, input.scans.max_range);
+    const double square = input.position_noise * input.position_noise;
+    scan.pose.covariance.diagonal() << square, square, input.heading_noise * input.heading_noise;
+  }
+  return all;
+}
+
+}  // namespace gaussmap::app
