@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The command line: parses, runs one command, turns every error into one line on stderr and an exit code.
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
 #include <iostream>
 #include <new>
 
 #include "commands/commands.h"
-#include "common/options.h"
 #include "common/signals.h"
+#include "common/usage.h"
 #include "gaussmap/version.h"
 
 namespace gaussmap::app {

@@ -5,7 +5,7 @@
 #include <iostream>
 #include <map>
 
-#include "common/options.h"
+#include "common/command.h"
 #include "common/report.h"
 
 namespace gaussmap::app {
@@ -84,48 +84,44 @@ MergeCost mergeCost(const BudgetInput& input) {
   return input.cost ? kCosts.at(*input.cost) : MergeCost::Volume;
 }
 
-void addLimitOptions(CLI::App& command, BudgetInput& input) {
-  CLI::Option* budget =
-      command
-          .add_option("--budget", input.budget,
-                      "Gaussians per coarse scale, as a multiple of its occupied cells; 1: one per cell")
-          ->check(numberBetween(1.0, 1e6));
-  CLI::Option* gaussians =
-      command.add_option("--max-gaussians", input.max_gaussians,
-                         "most Gaussians of each coarse scale: N, or SCALE=N for one (repeatable)");
-  CLI::Option* bytes =
-      command.add_option("--max-bytes", input.max_bytes, "most bytes of the whole file, with suffix k, M or G");
-  CLI::Option* error = command
-                           .add_option("--max-error", input.max_error,
-                                       "fewest Gaussians so that 95 % of the samples of a coarse scale lie within this "
-                                       "distance of the finest scale [m]")
-                           ->check(numberBetween(1e-9, 1e9));
-  for (CLI::Option* one : {budget, gaussians, bytes, error})
-    for (CLI::Option* other : {budget, gaussians, bytes, error})
-      if (one != other) one->excludes(other);
+Option addLimitOptions(Command& command, BudgetInput& input) {
+  const Option budget =
+      command.number("--budget", input.budget, 1.0, 1e6, "Gaussians per occupied cell of a coarse scale, on average");
+  command.texts("--max-gaussians", input.max_gaussians,
+                "most Gaussians of each coarse scale: N, or SCALE=N for one (repeatable)");
+  command.text("--max-bytes", input.max_bytes, "most bytes of the whole file, with suffix k, M or G");
+  command
+      .number("--max-error", input.max_error, 1e-9, 1e9,
+              "fewest Gaussians so that 95 % of the samples of a coarse scale lie within this distance of the finest "
+              "scale [m]")
+      .hideDefault();
+  command.exclusive({"--budget", "--max-gaussians", "--max-bytes", "--max-error"});
+  return budget;
 }
 
-void addCostOption(CLI::App& command, BudgetInput& input) {
-  rare(command.add_option("--cost", input.cost,
-                          "cost of a merge (agglomerate): volume (default), the growth of the ellipsoids' volume; "
-                          "runnalls, the loss of likelihood; volume-area, which keeps large surfaces longer"))
-      ->check(CLI::IsMember(kCosts));
+void addCostOption(Command& command, BudgetInput& input) {
+  command
+      .choice(
+          "--cost", input.cost, Command::wordsOf(kCosts),
+          "cost of a merge (agglomerate): volume (default), the growth of the ellipsoids' volume; runnalls, the loss "
+          "of likelihood; volume-area, which keeps large surfaces longer")
+      .rare();
 }
 
-void addBudgetOptions(CLI::App& command, BudgetInput& input) {
+void addBudgetOptions(Command& command, BudgetInput& input) {
   addLimitOptions(command, input);
-  command.get_option("--budget")->capture_default_str();
-  rare(command.add_option("--method", input.method,
-                          "agglomerate: merge the Gaussians of the finer scale until the budget is met; insert: split "
-                          "one cluster after the other, as in the paper"))
-      ->check(CLI::IsMember(kMethods))
-      ->capture_default_str();
+  command
+      .choice("--method", input.method, Command::wordsOf(kMethods),
+              "agglomerate: merge the Gaussians of the finer scale until the budget is met; insert: split one cluster "
+              "after the other, as in the paper")
+      .rare();
   addCostOption(command, input);
-  rare(command.add_option("--cells", input.cells,
-                          "which cell --method insert gives the next cluster to: that of the largest error (default, "
-                          "as in the paper), or of the largest volume of ellipsoids"))
-      ->check(CLI::IsMember(kCellChoices));
-  rare(addSeed(command, input.refine.seed, "seed of the random swaps of --method insert"));
+  command
+      .choice("--cells", input.cells, Command::wordsOf(kCellChoices),
+              "which cell --method insert gives the next cluster to: that of the largest error (default, as in the "
+              "paper), or of the largest volume of ellipsoids")
+      .rare();
+  command.seed(input.refine.seed, "seed of the random swaps of --method insert").rare();
 }
 
 void checkBudget(const BudgetInput& input) {

@@ -7,12 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "common/command.h"
 #include "common/json.h"
 #include "gaussmap/mapping/error_curve.h"
-
-namespace CLI {
-class App;
-}
 
 namespace gaussmap::app {
 
@@ -28,10 +25,10 @@ struct BudgetInput {
   RefineOptions refine;              // seed and threads
   bool curves = true;                // measure what other budgets would give
 };
-void addBudgetOptions(CLI::App& command, BudgetInput& input);
-/// Two parts of these, for commands that merge clusters only: the budgets without a default, and --cost.
-void addLimitOptions(CLI::App& command, BudgetInput& input);
-void addCostOption(CLI::App& command, BudgetInput& input);
+void addBudgetOptions(Command& command, BudgetInput& input);
+/// Two parts of these, for commands that only merge clusters: the budgets, and --cost. Returns --budget.
+Option addLimitOptions(Command& command, BudgetInput& input);
+void addCostOption(Command& command, BudgetInput& input);
 
 /// A whole number > 0, with an optional suffix k, M or G (powers of 1000) behind it. Throws UsageError, naming the
 /// option.

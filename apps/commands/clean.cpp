@@ -8,8 +8,8 @@
 
 #include "commands/commands.h"
 #include "commands/scan_input.h"
+#include "common/command.h"
 #include "common/json.h"
-#include "common/options.h"
 #include "common/progress_bar.h"
 #include "common/report.h"
 #include "evaluation/removal_score.h"
@@ -30,7 +30,6 @@ struct CleanCommand {
   ScanInput input;
   MovingPointOptions options;
   std::string folder, merged, removed, labels;
-  double no_return_is_free = 0.0;  // 0: it is no evidence
   bool force = false;
   bool json = false;
 
@@ -154,7 +153,6 @@ void run(CleanCommand command) {
   const AccumulateOptions input = accumulateOptions(command.input, command.options.resolution, evidence.threads);
   evidence.frame = input.frame;
   evidence.max_range = input.max_range;
-  if (command.no_return_is_free > 0.0) evidence.no_return_is_free = command.no_return_is_free;
   const std::vector<ScanSource> scans = findScans(command.input);
   checkScans(command, scans);
   const std::vector<std::filesystem::path> outputs = checkedOutputs(command, scans);
@@ -179,26 +177,24 @@ void run(CleanCommand command) {
 }  // namespace
 
 void addClean(CLI::App& app) {
-  auto command = std::make_shared<CleanCommand>();
-  CLI::App* sub = addCommand(app, "clean", kCleanHelp);
-  sub->add_option("scans", command->input.paths, "PCD files, or directories of them (in natural order)")->required();
-  sub->add_option("-o,--output", command->folder, "directory for the cleaned scans, named as they were");
-  sub->add_option("--merged", command->merged, "write the static points as one cloud in the map frame (.pcd)");
-  sub->add_option("--removed", command->removed, "write the moving points as one cloud in the map frame (.pcd)");
-  sub->add_flag("--force", command->force, "replace existing outputs");
-  sub->add_option("--labels", command->labels, "score against this field of the scans: 0 = static, else dynamic")
-      ->expected(0, 1)
-      ->default_str("label");
-  sub->add_option("--resolution", command->options.resolution, "side of the finest cells [m]")
-      ->check(numberBetween(1e-3, 1e3))
-      ->capture_default_str();
-  rare(sub->add_option("--no-return-is-free", command->no_return_is_free,
-                       "count directions without a return as free space up to this range [m]"))
-      ->check(numberBetween(1e-3, 1e6));
-  addScanOptions(*sub, command->input);
-  addThreads(*sub, command->options.evidence.threads);
-  addJson(*sub, command->json);
-  sub->callback([command] { run(*command); });
+  auto options = std::make_shared<CleanCommand>();
+  Command command(app, "clean", kCleanHelp);
+  addScanPaths(command, options->input);
+  command.text("-o,--output", options->folder, "directory for the cleaned scans, named as they were");
+  command.text("--merged", options->merged, "write the static points as one cloud in the map frame (.pcd)");
+  command.text("--removed", options->removed, "write the moving points as one cloud in the map frame (.pcd)");
+  command.force(options->force, "replace existing outputs");
+  command.text("--labels", options->labels, "score against this field of the scans: 0 = static, else dynamic")
+      .valueMayBeMissing("label");
+  command.number("--resolution", options->options.resolution, 1e-3, 1e3, "side of the finest cells [m]");
+  command
+      .number("--no-return-is-free", options->options.evidence.no_return_is_free, 1e-3, 1e6,
+              "count directions without a return as free space up to this range [m]")
+      .rare();
+  addScanOptions(command, options->input);
+  command.threads(options->options.evidence.threads);
+  command.json(options->json);
+  command.onRun([options] { run(*options); });
 }
 
 }  // namespace gaussmap::app

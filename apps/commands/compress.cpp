@@ -8,7 +8,7 @@
 
 #include "commands/commands.h"
 #include "commands/map_task.h"
-#include "common/options.h"
+#include "common/command.h"
 #include "common/report.h"
 
 namespace gaussmap::app {
@@ -69,14 +69,14 @@ void run(CompressCommand command) {
 
 void addCompress(CLI::App& app) {
   auto options = std::make_shared<CompressCommand>();
-  CLI::App* command = addCommand(app, "compress", kCompressHelp);
-  addMapToMap(*command, *options);
-  command->add_option("--max-error", options->max_error, "how far a coarse cell may be from the finest scale [m]")
-      ->check(numberBetween(1e-9, 1e9))
-      ->required();
-  rare(addSeed(*command, options->compress.seed, "seed of the samples"));
-  addRunOptions(*command, *options);
-  command->callback([options] { run(*options); });
+  Command command(app, "compress", kCompressHelp);
+  addMapToMap(command, *options);
+  command.number("--max-error", options->max_error, 1e-9, 1e9, "how far a coarse cell may be from the finest scale [m]")
+      .required()
+      .hideDefault();
+  command.seed(options->compress.seed, "seed of the samples").rare();
+  addRunOptions(command, *options);
+  command.onRun([options] { run(*options); });
 }
 
 }  // namespace gaussmap::app

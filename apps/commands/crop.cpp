@@ -8,7 +8,7 @@
 
 #include "commands/commands.h"
 #include "commands/map_task.h"
-#include "common/options.h"
+#include "common/command.h"
 
 namespace gaussmap::app {
 namespace {
@@ -72,17 +72,15 @@ void run(const CropCommand& command) {
 
 void addCrop(CLI::App& app) {
   auto options = std::make_shared<CropCommand>();
-  CLI::App* command = addCommand(app, "crop", kCropHelp);
-  addMapToMap(*command, *options);
-  command->add_option("--box", options->box, "x0 y0 x1 y1, or x0 y0 z0 x1 y1 z1 [m]: low corner <= mean < high corner")
-      ->expected(4, 6)
-      ->check(numberBetween(-1e12, 1e12));
-  command->add_option("--polygon", options->polygon, "x y of its corners, in order [m], any height")
-      ->expected(6, 1000000)
-      ->check(numberBetween(-1e12, 1e12));
-  command->add_flag("--outside", options->outside, "keep what lies outside instead");
-  addJson(*command, options->json);
-  command->callback([options] { run(*options); });
+  Command command(app, "crop", kCropHelp);
+  addMapToMap(command, *options);
+  command.numbers("--box", options->box, 4, 6, -1e12, 1e12,
+                  "x0 y0 x1 y1, or x0 y0 z0 x1 y1 z1 [m]: low corner <= mean < high corner");
+  command.numbers("--polygon", options->polygon, 6, 1000000, -1e12, 1e12,
+                  "x y of its corners, in order [m], any height");
+  command.flag("--outside", options->outside, "keep what lies outside instead");
+  command.json(options->json);
+  command.onRun([options] { run(*options); });
 }
 
 }  // namespace gaussmap::app

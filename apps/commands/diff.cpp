@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "commands/commands.h"
+#include "common/command.h"
 #include "common/json.h"
-#include "common/options.h"
 #include "common/report.h"
 #include "gaussmap/editing/diff_maps.h"
 #include "gaussmap/io/pcd/map_pcd.h"
@@ -105,27 +105,23 @@ void run(const DiffCommand& options) {
 
 void addDiff(CLI::App& app) {
   auto options = std::make_shared<DiffCommand>();
-  CLI::App* command = addCommand(app, "diff", kDiffHelp);
-  command->add_option("first", options->first, "map (.gmap, or PCD of Gaussians)")->required();
-  command->add_option("second", options->second, "the later one, in the same frame and cells")->required();
-  command->add_option("-o,--output", options->output, "labelled Gaussians to write (.pcd)");
-  command->add_flag("--force", options->force, "replace an existing output");
-  command->add_option("--scale", options->diff.scale, "which scale, 0 = finest")
-      ->check(CLI::Range(0, 63))
-      ->capture_default_str();
+  Command command(app, "diff", kDiffHelp);
+  command.text("first", options->first, "map (.gmap, or PCD of Gaussians)").required();
+  command.text("second", options->second, "the later one, in the same frame and cells").required();
+  command.text("-o,--output", options->output, "labelled Gaussians to write (.pcd)");
+  command.force(options->force);
+  command.scale(options->diff.scale, "which scale, 0 = finest");
+  command.number("--level", options->diff.level, 1e-12, 0.5,
+                 "significance level: a change is reported if its p-value is at most this");
   command
-      ->add_option("--level", options->diff.level,
-                   "significance level: a change is reported if its p-value is at most this")
-      ->check(numberBetween(1e-12, 0.5))
-      ->capture_default_str();
-  rare(command->add_option("--points", options->diff.points,
-                           "how many points of one object count as independent at most; more find smaller movements, "
-                           "but also errors of the poses"))
-      ->check(numberBetween(1.0, 1e9))
-      ->capture_default_str();
-  addThreads(*command, options->diff.threads);
-  addJson(*command, options->json);
-  command->callback([options] { run(*options); });
+      .number(
+          "--points", options->diff.points, 1.0, 1e9,
+          "how many points of one object count as independent at most; more find smaller movements, but also errors "
+          "of the poses")
+      .rare();
+  command.threads(options->diff.threads);
+  command.json(options->json);
+  command.onRun([options] { run(*options); });
 }
 
 }  // namespace gaussmap::app

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "commands/commands.h"
-#include "common/options.h"
+#include "common/command.h"
 #include "common/report.h"
 #include "drawing/map_picture.h"
 #include "drawing/plan_view.h"
@@ -96,19 +96,13 @@ void run(const DrawCommand& options) {
 
 void addDraw(CLI::App& app) {
   auto options = std::make_shared<DrawCommand>();
-  CLI::App* command = addCommand(app, "draw", kDrawHelp);
-  command->add_option("maps", options->maps, "maps (.gmap, or PCD of Gaussians)")->required();
-  addOutput(*command, options->output, "picture to write (.svg)");
-  command->add_option("--scale", options->scale, "which scale, 0 = finest; default: the coarsest")
-      ->check(CLI::Range(0, 63));
-  command->add_option("--sigma", options->sigma, "half axes of the ellipses, in standard deviations")
-      ->check(numberBetween(0.01, 100.0))
-      ->capture_default_str();
-  command->add_option("--box", options->box, "only the part from x0 y0 to x1 y1 [m]")
-      ->expected(4)
-      ->type_name("X0 Y0 X1 Y1")
-      ->check(numberBetween(-1e9, 1e9));
-  command->callback([options] { run(*options); });
+  Command command(app, "draw", kDrawHelp);
+  command.texts("maps", options->maps, "maps (.gmap, or PCD of Gaussians)").required();
+  command.output(options->output, "picture to write (.svg)");
+  command.scale(options->scale, "which scale, 0 = finest; default: the coarsest");
+  command.number("--sigma", options->sigma, 0.01, 100.0, "half axes of the ellipses, in standard deviations");
+  command.numbers("--box", options->box, 4, -1e9, 1e9, "only the part from x0 y0 to x1 y1 [m]").type("X0 Y0 X1 Y1");
+  command.onRun([options] { run(*options); });
 }
 
 }  // namespace gaussmap::app

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "commands/commands.h"
-#include "common/options.h"
+#include "common/command.h"
 #include "common/report.h"
 #include "gaussmap/io/export/gaussian_ply.h"
 #include "gaussmap/io/export/gaussian_table.h"
@@ -90,20 +90,17 @@ void run(const ExportCommand& options) {
 
 void addExport(CLI::App& app) {
   auto options = std::make_shared<ExportCommand>();
-  CLI::App* command = addCommand(app, "export", kExportHelp);
-  addMap(*command, options->map);
-  command->add_option("output", options->output.path, "file to write (.pcd, .ply, .vtp, .csv)")->required();
-  command->add_flag("--force", options->output.force, "replace an existing output");
-  command->add_option("--scale", options->scale, "only this scale, 0 = finest")->check(CLI::Range(0, 63));
-  command->add_option("--as", options->content, "what a .ply holds: ellipsoids (default), points, splats")
-      ->check(CLI::IsMember({"ellipsoids", "points", "splats"}));
-  command->add_option("--color", options->colour, "colours of a .ply: height (default), normal")
-      ->check(CLI::IsMember({"height", "normal"}));
-  command
-      ->add_option("--sigma", options->sigma,
-                   "half axes of the ellipsoids of a .ply, in standard deviations; default 2")
-      ->check(numberBetween(0.01, 100.0));
-  command->callback([options] { run(*options); });
+  Command command(app, "export", kExportHelp);
+  command.map(options->map);
+  command.text("output", options->output.path, "file to write (.pcd, .ply, .vtp, .csv)").required();
+  command.force(options->output.force);
+  command.scale(options->scale, "only this scale, 0 = finest");
+  command.choice("--as", options->content, {"ellipsoids", "points", "splats"},
+                 "what a .ply holds: ellipsoids (default), points, splats");
+  command.choice("--color", options->colour, {"height", "normal"}, "colours of a .ply: height (default), normal");
+  command.number("--sigma", options->sigma, 0.01, 100.0,
+                 "half axes of the ellipsoids of a .ply, in standard deviations; default 2");
+  command.onRun([options] { run(*options); });
 }
 
 }  // namespace gaussmap::app

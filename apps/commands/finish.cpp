@@ -6,7 +6,7 @@
 
 #include "commands/commands.h"
 #include "commands/map_task.h"
-#include "common/options.h"
+#include "common/command.h"
 #include "common/report.h"
 
 namespace gaussmap::app {
@@ -62,16 +62,12 @@ void run(const FinishCommand& command) {
 
 void addFinish(CLI::App& app) {
   auto options = std::make_shared<FinishCommand>();
-  CLI::App* command = addCommand(app, "finish", kFinishHelp);
-  addMapToMap(*command, *options);
-  command->add_option("--finest-scale", options->finest_scale, "leave out finer scales")
-      ->check(CLI::Range(0, 63))
-      ->capture_default_str();
-  command->add_option("--compression", options->compression, "zstd level; higher: smaller, slower to write")
-      ->check(CLI::Range(1, 19))
-      ->capture_default_str();
-  addRunOptions(*command, *options);
-  command->callback([options] { run(*options); });
+  Command command(app, "finish", kFinishHelp);
+  addMapToMap(command, *options);
+  command.number("--finest-scale", options->finest_scale, 0, 63, "leave out finer scales");
+  command.number("--compression", options->compression, 1, 19, "zstd level; higher: smaller, slower to write");
+  addRunOptions(command, *options);
+  command.onRun([options] { run(*options); });
 }
 
 }  // namespace gaussmap::app

@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "commands/commands.h"
-#include "common/options.h"
+#include "common/command.h"
 #include "gaussmap/io/pcd/map_pcd.h"
 
 namespace gaussmap::app {
@@ -85,56 +85,47 @@ void run(const HausdorffCommand& command) {
   compareCloud(command, reference);
 }
 
-void addSampleOptions(CLI::App& command, SampleOptions& samples) {
-  command.add_option("--samples", samples.samples, "samples of a scale, divided among its Gaussians")
-      ->check(CLI::Range(1, 100000000))
-      ->capture_default_str();
-  rare(command.add_option("--at-least", samples.at_least, "samples of every Gaussian"))
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
-  rare(
-      command.add_option("--sampling", samples.share, "samples in proportion to ellipsoid volume, or to weight (mass)"))
-      ->transform(CLI::CheckedTransformer(kShares))
-      ->default_str("volume");
-  rare(command.add_option("--samples-in", samples.bounds,
-                          "where samples of a Gaussian may lie: in the box of the finest cells that it represents, or "
-                          "(as in the paper) anywhere in its cell"))
-      ->transform(CLI::CheckedTransformer(kBounds))
-      ->default_str("members");
-  rare(addSeed(command, samples.seed, "seed of the samples"));
+void addSampleOptions(Command& command, SampleOptions& samples) {
+  command.number("--samples", samples.samples, 1, 100000000, "samples of a scale, divided among its Gaussians");
+  command.number("--at-least", samples.at_least, 1, 1000000, "samples of every Gaussian").rare();
+  command
+      .choiceOf("--sampling", samples.share, kShares, "samples in proportion to ellipsoid volume, or to weight (mass)")
+      .rare();
+  command
+      .choiceOf("--samples-in", samples.bounds, kBounds,
+                "where samples of a Gaussian may lie: in the box of the finest cells that it represents, or (as in the "
+                "paper) anywhere in its cell")
+      .rare();
+  command.seed(samples.seed, "seed of the samples").rare();
 }
 
 }  // namespace
 
 void addHausdorff(CLI::App& app) {
   auto options = std::make_shared<HausdorffCommand>();
-  CLI::App* command = addCommand(app, "hausdorff", kHausdorffHelp);
-  command->add_option("subject", options->subject, "map (.gmap, or PCD of Gaussians), or a PCD cloud or directory")
-      ->required();
+  Command command(app, "hausdorff", kHausdorffHelp);
+  command.text("subject", options->subject, "map (.gmap, or PCD of Gaussians), or a PCD cloud or directory").required();
   command
-      ->add_option("reference", options->reference.paths,
-                   "PCD files or directories of them, or one mesh (PLY), or one map")
-      ->required();
-  CLI::Option* scale = command->add_option("--scale", options->scale, "only this scale, 0 = finest; default: all")
-                           ->check(CLI::Range(0, 63));
-  command->add_flag("--leaves", options->leaves, "compare all leaves of a compressed map at once")->excludes(scale);
-  addSampleOptions(*command, options->samples);
-  command->add_flag("--max-only", options->max_only, "only the maxima of two clouds, which is faster");
-  command->add_flag("--held-out", options->held_out, "mean log-likelihood of the reference points under the map");
-  rare(command->add_option("--background", options->scoring.background, "--held-out: share of points from anywhere"))
-      ->check(numberBetween(1e-12, 0.999999))
-      ->capture_default_str();
-  command->add_option("--write-errors", options->errors.path, "PCD file to write: points coloured by their distance");
-  rare(command->add_option("--direction", options->direction,
-                           "--write-errors: forward = samples of the map, or points of the cloud; backward = the "
-                           "reference"))
-      ->check(CLI::IsMember({"forward", "backward"}))
-      ->capture_default_str();
-  command->add_flag("--force", options->errors.force, "replace an existing file of errors");
-  addScanOptions(*command, options->reference);
-  addThreads(*command, options->samples.threads);
-  addJson(*command, options->json);
-  command->callback([options] { run(*options); });
+      .texts("reference", options->reference.paths, "PCD files or directories of them, or one mesh (PLY), or one map")
+      .required();
+  const Option scale = command.scale(options->scale, "only this scale, 0 = finest; default: all");
+  command.flag("--leaves", options->leaves, "compare all leaves of a compressed map at once").excludes(scale);
+  addSampleOptions(command, options->samples);
+  command.flag("--max-only", options->max_only, "only the maxima of two clouds, which is faster");
+  command.flag("--held-out", options->held_out, "mean log-likelihood of the reference points under the map");
+  command
+      .number("--background", options->scoring.background, 1e-12, 0.999999, "--held-out: share of points from anywhere")
+      .rare();
+  command.text("--write-errors", options->errors.path, "PCD file to write: points coloured by their distance");
+  command
+      .choice("--direction", options->direction, {"forward", "backward"},
+              "--write-errors: forward = samples of the map, or points of the cloud; backward = the reference")
+      .rare();
+  command.force(options->errors.force, "replace an existing file of errors");
+  addScanOptions(command, options->reference);
+  command.threads(options->samples.threads);
+  command.json(options->json);
+  command.onRun([options] { run(*options); });
 }
 
 }  // namespace gaussmap::app

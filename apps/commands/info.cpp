@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "commands/commands.h"
+#include "common/command.h"
 #include "common/json.h"
-#include "common/options.h"
 #include "common/report.h"
 #include "drawing/plot.h"
 #include "gaussmap/io/pcd/map_pcd.h"
@@ -209,12 +209,12 @@ void run(const InfoCommand& command) {
 
 void addInfo(CLI::App& app) {
   auto options = std::make_shared<InfoCommand>();
-  CLI::App* command = addCommand(app, "info", kInfoHelp);
-  addMap(*command, options->map);
-  command->add_option("--plot", options->plot.path, "draw the error against the number of Gaussians (.svg)");
-  command->add_flag("--force", options->plot.force, "replace an existing plot");
-  addJson(*command, options->json);
-  command->callback([options] { run(*options); });
+  Command command(app, "info", kInfoHelp);
+  command.map(options->map);
+  command.text("--plot", options->plot.path, "draw the error against the number of Gaussians (.svg)");
+  command.force(options->plot.force, "replace an existing plot");
+  command.json(options->json);
+  command.onRun([options] { run(*options); });
 }
 
 }  // namespace gaussmap::app

@@ -3,24 +3,24 @@
 
 #include <iostream>
 
-#include "common/options.h"
+#include "common/command.h"
 #include "common/report.h"
 #include "gaussmap/io/pcd/map_pcd.h"
 
 namespace gaussmap::app {
 
-void addMapToMap(CLI::App& command, MapTaskOptions& options) {
-  addMap(command, options.map);
+void addMapToMap(Command& command, MapTaskOptions& options) {
+  command.map(options.map);
   addMapOutput(command, options);
 }
 
-void addMapOutput(CLI::App& command, MapTaskOptions& options) {
-  addOutput(command, options.output, "map file to write (.gmap)");
+void addMapOutput(Command& command, MapTaskOptions& options) {
+  command.output(options.output, "map file to write (.gmap)");
 }
 
-void addRunOptions(CLI::App& command, MapTaskOptions& options) {
-  addThreads(command, options.threads);
-  addJson(command, options.json);
+void addRunOptions(Command& command, MapTaskOptions& options) {
+  command.threads(options.threads);
+  command.json(options.json);
 }
 
 MapTask::MapTask(const MapTaskOptions& options, const std::vector<std::filesystem::path>& inputs) : options_(options) {

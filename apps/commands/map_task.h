@@ -4,12 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "common/command.h"
 #include "common/json.h"
-#include "common/usage.h"
-
-namespace CLI {
-class App;
-}
 
 namespace gaussmap::app {
 
@@ -21,11 +17,11 @@ struct MapTaskOptions {
   bool json = false;
 };
 /// Adds MAP, -o and --force.
-void addMapToMap(CLI::App& command, MapTaskOptions& options);
+void addMapToMap(Command& command, MapTaskOptions& options);
 /// Adds -o and --force.
-void addMapOutput(CLI::App& command, MapTaskOptions& options);
+void addMapOutput(Command& command, MapTaskOptions& options);
 /// Adds --threads and --json.
-void addRunOptions(CLI::App& command, MapTaskOptions& options);
+void addRunOptions(Command& command, MapTaskOptions& options);
 
 /// What a command says about the map that it has written.
 struct MapReport {

@@ -8,7 +8,7 @@
 #include "commands/commands.h"
 #include "commands/map_task.h"
 #include "commands/motion.h"
-#include "common/options.h"
+#include "common/command.h"
 #include "common/report.h"
 #include "gaussmap/core/error.h"
 #include "gaussmap/io/pcd/map_pcd.h"
@@ -101,14 +101,14 @@ void run(const MergeCommand& command) {
 
 void addMerge(CLI::App& app) {
   auto options = std::make_shared<MergeCommand>();
-  CLI::App* command = addCommand(app, "merge", kMergeHelp);
-  command->add_option("maps", options->maps, "maps (.gmap, or PCD of Gaussians)")->required();
-  addMapOutput(*command, *options);
-  addMotionOptions(*command, options->motion);
-  command->add_flag("--resample", options->resample, "sort maps of other cells into those of the first map");
-  command->add_flag("--exact", options->exact, "refuse maps that cannot be merged exactly");
-  addRunOptions(*command, *options);
-  command->callback([options] { run(*options); });
+  Command command(app, "merge", kMergeHelp);
+  command.texts("maps", options->maps, "maps (.gmap, or PCD of Gaussians)").required();
+  addMapOutput(command, *options);
+  addMotionOptions(command, options->motion);
+  command.flag("--resample", options->resample, "sort maps of other cells into those of the first map");
+  command.flag("--exact", options->exact, "refuse maps that cannot be merged exactly");
+  addRunOptions(command, *options);
+  command.onRun([options] { run(*options); });
 }
 
 }  // namespace gaussmap::app

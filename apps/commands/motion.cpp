@@ -5,7 +5,7 @@
 #include <optional>
 #include <sstream>
 
-#include "common/options.h"
+#include "common/command.h"
 #include "gaussmap/io/scans/pose_file.h"
 
 namespace gaussmap::app {
@@ -52,19 +52,21 @@ PoseCovariance<3> covarianceIn(const std::string& text) {
 
 }  // namespace
 
-void addMotionOptions(CLI::App& command, MotionInput& input) {
-  CLI::Option* const transform =
+void addMotionOptions(Command& command, MotionInput& input) {
+  const Option transform =
       command
-          .add_option("--transform", input.transforms,
-                      "pose of the map's frame in the target frame, \"x y z qx qy qz qw\" [m]; once per map to move")
-          ->allow_extra_args(false);
+          .texts("--transform", input.transforms,
+                 "pose of the map's frame in the target frame, \"x y z qx qy qz qw\" [m]; once per map to move")
+          .onePerUse();
   command
-      .add_option("--transform-file", input.file,
-                  "file of these poses, one line per map: TUM, KITTI, or the name of the map in front")
-      ->excludes(transform);
-  rare(command.add_option("--pose-covariance", input.covariance,
-                          "covariance of these poses, which widens the Gaussians: the 6 x 6 numbers of x y z [m] and "
-                          "rotations about x y z [rad], or the 6 of the diagonal, in quotes"));
+      .text("--transform-file", input.file,
+            "file of these poses, one line per map: TUM, KITTI, or the name of the map in front")
+      .excludes(transform);
+  command
+      .text("--pose-covariance", input.covariance,
+            "covariance of these poses, which widens the Gaussians: the 6 x 6 numbers of x y z [m] and rotations about "
+            "x y z [rad], or the 6 of the diagonal, in quotes")
+      .rare();
 }
 
 std::vector<RigidMotion<3>> motionsOf(const MotionInput& input, const std::vector<std::filesystem::path>& maps) {

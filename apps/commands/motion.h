@@ -5,11 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "common/command.h"
 #include "gaussmap/editing/transform_map.h"
-
-namespace CLI {
-class App;
-}
 
 namespace gaussmap::app {
 
@@ -19,7 +16,7 @@ struct MotionInput {
   std::string file;
   std::string covariance;  // 6 or 36 numbers
 };
-void addMotionOptions(CLI::App& command, MotionInput& input);
+void addMotionOptions(Command& command, MotionInput& input);
 
 /// The motion of each map, in their order; empty if no motion is given. Throws UsageError, FileError.
 std::vector<RigidMotion<3>> motionsOf(const MotionInput& input, const std::vector<std::filesystem::path>& maps);

@@ -6,7 +6,7 @@
 
 #include "commands/commands.h"
 #include "commands/pcd2map/scan_report.h"
-#include "common/options.h"
+#include "common/command.h"
 #include "common/report.h"
 #include "gaussmap/io/scans/scan_list.h"
 
@@ -56,43 +56,45 @@ void run(const Pcd2mapOptions& options) {
   task.report(report);
 }
 
-void addOptions(CLI::App& command, Pcd2mapOptions& options) {
-  command.add_option("scans", options.input.paths, "PCD files, or directories of them (in natural order)")->required();
-  addOutput(command, options.output, "map file to write (.gmap)");
-  command.get_option("--output")->required(false);
-  CLI::Option* update = command.add_option("--update", options.update, "map file to add the scans to (.gmap)");
-  command.add_option("--resolution", options.map.resolution, "side of the finest cells [m]")->capture_default_str();
-  command.add_option("--scales", options.map.scales, "number of scales")->capture_default_str();
-  rare(command.add_option("--ratio", options.map.ratio, "side of the cells of the next scale, in cells of this one"))
-      ->capture_default_str();
-  rare(command.add_option("--noise", options.map.noise, "noise floor of every Gaussian [m]; 0: resolution / 20"))
-      ->capture_default_str();
+void addOptions(Command& command, Pcd2mapOptions& options) {
+  addScanPaths(command, options.input);
+  command.text("-o,--output", options.output.path, "map file to write (.gmap)");
+  command.force(options.output.force);
+  command.text("--update", options.update, "map file to add the scans to (.gmap)");
+  command.number("--resolution", options.map.resolution, "side of the finest cells [m]");
+  command.number("--scales", options.map.scales, "number of scales");
+  command.number("--ratio", options.map.ratio, "side of the cells of the next scale, in cells of this one").rare();
+  command.number("--noise", options.map.noise, "noise floor of every Gaussian [m]; 0: resolution / 20").rare();
   addBudgetOptions(command, options.budget);
   addOnlineOptions(command, options.online);
   addScanOptions(command, options.input);
-  rare(command.add_option("--max-memory", options.max_memory,
-                          "build within this memory (suffix k, M or G), tile by tile through a temporary file beside "
-                          "the map; the map is the same, without error curves"));
-  rare(command.add_flag("!--no-curves", options.budget.curves,
-                        "do not measure the error curves of other budgets (gaussmap info); saves time"));
-  rare(addThreads(command, options.budget.refine.threads));
-  addJson(command, options.json);
-  for (const char* const other : {"--output", "--force", "--resolution", "--scales", "--ratio", "--noise", "--online",
-                                  "--max-gaussians", "--max-bytes", "--max-error", "--method", "--max-memory"})
-    update->excludes(command.get_option(other));
+  command
+      .text(
+          "--max-memory", options.max_memory,
+          "build within this memory (suffix k, M or G), tile by tile through a temporary file beside the map; the map "
+          "is the same, without error curves")
+      .rare();
+  command
+      .flag("!--no-curves", options.budget.curves,
+            "do not measure the error curves of other budgets (gaussmap info); saves time")
+      .rare();
+  command.threads(options.budget.refine.threads).rare();
+  command.json(options.json);
+  command.excludes("--update", {"--output", "--force", "--resolution", "--scales", "--ratio", "--noise", "--online",
+                                "--max-gaussians", "--max-bytes", "--max-error", "--method", "--max-memory"});
 }
 
 }  // namespace
 
 void addPcd2map(CLI::App& app) {
   auto options = std::make_shared<Pcd2mapOptions>();
-  CLI::App* command = addCommand(app, "pcd2map", kPcd2mapHelp);
-  addOptions(*command, *options);
-  command->callback([command, options] {
-    if (command->count("--update") + command->count("--output") == 0)
-      throw UsageError("--output is required (or --update MAP)");
-    if (command->count("--update") == 0) return run(*options);
-    if (command->count("--budget") > 0) options->update_budget = options->budget.budget;
+  Command command(app, "pcd2map", kPcd2mapHelp);
+  addOptions(command, *options);
+  command.onRun([command, options] {
+    const bool updates = command.isGiven("--update");
+    if (!updates && !command.isGiven("--output")) throw UsageError("--output is required (or --update MAP)");
+    if (!updates) return run(*options);
+    if (command.isGiven("--budget")) options->update_budget = options->budget.budget;
     updateFromScans(*options);
   });
 }

@@ -6,7 +6,7 @@
 #include "commands/budget.h"
 #include "commands/commands.h"
 #include "commands/map_task.h"
-#include "common/options.h"
+#include "common/command.h"
 
 namespace gaussmap::app {
 namespace {
@@ -38,11 +38,11 @@ void run(RefineCommand command) {
 
 void addRefine(CLI::App& app) {
   auto options = std::make_shared<RefineCommand>();
-  CLI::App* command = addCommand(app, "refine", kRefineHelp);
-  addMapToMap(*command, *options);
-  addBudgetOptions(*command, options->budget);
-  addRunOptions(*command, *options);
-  command->callback([options] { run(*options); });
+  Command command(app, "refine", kRefineHelp);
+  addMapToMap(command, *options);
+  addBudgetOptions(command, options->budget);
+  addRunOptions(command, *options);
+  command.onRun([options] { run(*options); });
 }
 
 }  // namespace gaussmap::app

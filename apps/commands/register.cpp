@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "commands/commands.h"
+#include "common/command.h"
 #include "common/json.h"
-#include "common/options.h"
 #include "gaussmap/io/pcd/map_pcd.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
 #include "gaussmap/io/scans/scan_list.h"
@@ -116,26 +116,23 @@ void run(const RegisterCommand& command) {
 }  // namespace
 
 void addRegister(CLI::App& app) {
-  auto command = std::make_shared<RegisterCommand>();
-  CLI::App* const sub = addCommand(app, "register", kRegisterHelp);
-  sub->add_option("inputs", command->inputs, "scans (.pcd files or directories of them) or maps, then the map")
-      ->required()
-      ->expected(2, -1);
-  sub->add_option("--guess", command->guess, "pose at which the search for the first scan starts: x y z qx qy qz qw")
-      ->expected(7)
-      ->check(numberBetween(-1e12, 1e12));
-  sub->add_option("--tum", command->tum, "write the poses, one line per scan: number x y z qx qy qz qw");
-  sub->add_flag("--force", command->force, "replace an existing file of poses");
-  rare(sub->add_option("--scan-resolution", command->options.resolution,
-                       "side of the cells of the scan [m], 0 = as the finest cells of the map"))
-      ->check(numberBetween(0.0, 1e6))
-      ->capture_default_str();
-  rare(sub->add_option("--kernel", command->options.kernel, "standard deviations at which a residual counts half"))
-      ->check(numberBetween(1e-3, 1e6))
-      ->capture_default_str();
-  addThreads(*sub, command->options.threads);
-  sub->add_flag("--json", command->json, "print the poses as JSON, with their 6 x 6 covariances");
-  sub->callback([command] { run(*command); });
+  auto options = std::make_shared<RegisterCommand>();
+  Command command(app, "register", kRegisterHelp);
+  command.texts("inputs", options->inputs, "scans (.pcd files or directories of them) or maps, then the map")
+      .required();
+  command.numbers("--guess", options->guess, 7, -1e12, 1e12,
+                  "pose at which the search for the first scan starts: x y z qx qy qz qw");
+  command.text("--tum", options->tum, "write the poses, one line per scan: number x y z qx qy qz qw");
+  command.force(options->force, "replace an existing file of poses");
+  command
+      .number("--scan-resolution", options->options.resolution, 0.0, 1e6,
+              "side of the cells of the scan [m], 0 = as the finest cells of the map")
+      .rare();
+  command.number("--kernel", options->options.kernel, 1e-3, 1e6, "standard deviations at which a residual counts half")
+      .rare();
+  command.threads(options->options.threads);
+  command.json(options->json);
+  command.onRun([options] { run(*options); });
 }
 
 }  // namespace gaussmap::app

@@ -5,7 +5,7 @@
 
 #include "commands/commands.h"
 #include "commands/map_task.h"
-#include "common/options.h"
+#include "common/command.h"
 #include "common/report.h"
 #include "editing/restore.h"
 #include "gaussmap/core/error.h"
@@ -68,16 +68,15 @@ void run(const RestoreCommand& command) {
 
 void addRestore(CLI::App& app) {
   auto options = std::make_shared<RestoreCommand>();
-  CLI::App* command = addCommand(app, "restore", kRestoreHelp);
-  command->add_option("map", options->map, "map (.gmap)")->required();
-  command->add_option("removed", options->removed, "deleted clusters, written by pcd2map --online --removed (.pcd)")
-      ->required();
-  addMapOutput(*command, *options);
-  command->add_option("--box", options->box, "only clusters whose mean lies in this box: x0 y0 z0 x1 y1 z1 [m]")
-      ->expected(6)
-      ->check(numberBetween(-1e12, 1e12));
-  addRunOptions(*command, *options);
-  command->callback([options] { run(*options); });
+  Command command(app, "restore", kRestoreHelp);
+  command.text("map", options->map, "map (.gmap)").required();
+  command.text("removed", options->removed, "deleted clusters, written by pcd2map --online --removed (.pcd)")
+      .required();
+  addMapOutput(command, *options);
+  command.numbers("--box", options->box, 6, -1e12, 1e12,
+                  "only clusters whose mean lies in this box: x0 y0 z0 x1 y1 z1 [m]");
+  addRunOptions(command, *options);
+  command.onRun([options] { run(*options); });
 }
 
 }  // namespace gaussmap::app

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "common/options.h"
+#include "common/command.h"
 #include "common/report.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
 #include "gaussmap/io/scans/pose_checks.h"
@@ -16,15 +16,15 @@
 namespace gaussmap::app {
 using namespace detail;
 
-void addScanOptions(CLI::App& command, ScanInput& input) {
-  command.add_option("--poses", input.poses,
-                     "file of the sensor poses in the map frame (TUM or KITTI); default: the VIEWPOINT of each scan");
-  command.add_option("--frame", input.frame, "frame of the points in the files")
-      ->check(CLI::IsMember({"sensor", "map"}))
-      ->capture_default_str();
-  command.add_option("--max-range", input.max_range, "drop points farther from the sensor [m]; 0: no limit")
-      ->check(numberBetween(0.0, 1e9))
-      ->capture_default_str();
+void addScanPaths(Command& command, ScanInput& input) {
+  command.texts("scans", input.paths, "PCD files, or directories of them (in natural order)").required();
+}
+
+void addScanOptions(Command& command, ScanInput& input) {
+  command.text("--poses", input.poses,
+               "file of the sensor poses in the map frame (TUM or KITTI); default: the VIEWPOINT of each scan");
+  command.choice("--frame", input.frame, {"sensor", "map"}, "frame of the points in the files");
+  command.number("--max-range", input.max_range, 0.0, 1e9, "drop points farther from the sensor [m]; 0: no limit");
 }
 
 namespace {

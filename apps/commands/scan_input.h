@@ -4,12 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "common/command.h"
 #include "gaussmap/mapping/accumulate_scans.h"
 #include "gaussmap/mapping/scan.h"
-
-namespace CLI {
-class App;
-}
 
 namespace gaussmap::app {
 
@@ -20,8 +17,10 @@ struct ScanInput {
   std::string frame = "sensor";
   double max_range = 0.0;  // 0: no limit
 };
-/// Adds --poses, --frame and --max-range; not the paths.
-void addScanOptions(CLI::App& command, ScanInput& input);
+/// Adds the positional argument of the paths.
+void addScanPaths(Command& command, ScanInput& input);
+/// Adds --poses, --frame and --max-range.
+void addScanOptions(Command& command, ScanInput& input);
 
 /// Lists the scans, gives each its pose and diagnoses the poses; warnings go to stderr.
 std::vector<ScanSource> findScans(const ScanInput& input);

@@ -9,8 +9,8 @@
 
 #include "commands/commands.h"
 #include "commands/segments/segment_report.h"
+#include "common/command.h"
 #include "common/json.h"
-#include "common/options.h"
 #include "common/report.h"
 #include "gaussmap/io/export/segment_files.h"
 #include "gaussmap/io/logs/carmen_log.h"
@@ -36,8 +36,8 @@ void checkFiles(const SegmentsCommand& command, std::vector<std::filesystem::pat
 }
 
 /// Throws UsageError for options that a finished map has no use for.
-void checkFinished(const CLI::App& app, const SegmentsCommand& command) {
-  std::string option = givenFitterOption(app);
+void checkFinished(const Command& given, const SegmentsCommand& command) {
+  std::string option = givenFitterOption(given);
   if (!command.stats.empty()) option = "--stats";
   if (command.evidence) option = "--evidence";
   if (command.every > 1) option = "--every";
@@ -46,11 +46,11 @@ void checkFinished(const CLI::App& app, const SegmentsCommand& command) {
 }
 
 /// Reads a finished map, or fits one to scans.
-FittedSegments mapOf(const CLI::App& app, const SegmentsCommand& command) {
+FittedSegments mapOf(const Command& given, const SegmentsCommand& command) {
   const std::vector<std::string>& paths = command.input.scans.paths;
   const bool is_pcd = paths.size() == 1 && !isCarmenLogName(paths[0]) && !std::filesystem::is_directory(paths[0]);
   if (is_pcd && isSegmentPcd(paths[0])) {
-    checkFinished(app, command);
+    checkFinished(given, command);
     FittedSegments finished;
     finished.map = readSegmentPcd(paths[0]);
     return finished;
@@ -91,12 +91,12 @@ Json mapJson(const SegmentsCommand& command, const FittedSegments& fitted) {
   return json;
 }
 
-void run(const CLI::App& app, const SegmentsCommand& command) {
+void run(const Command& given, const SegmentsCommand& command) {
   if (command.outputs.empty() && command.stats.empty() && command.evaluate.empty() && command.walls.empty())
     throw UsageError("nothing to do: give -o FILE, --stats FILE, --evaluate LOG or --walls FILE");
   for (const std::string& output : command.outputs) checkSegmentsName(output);
   checkFiles(command, {command.input.scans.paths.begin(), command.input.scans.paths.end()});
-  const FittedSegments fitted = mapOf(app, command);
+  const FittedSegments fitted = mapOf(given, command);
   std::optional<HoldOutScore> held_out;
   LaserScans test;
   if (!command.evaluate.empty()) {
@@ -124,24 +124,19 @@ void run(const CLI::App& app, const SegmentsCommand& command) {
 
 void addSegments(CLI::App& app) {
   auto options = std::make_shared<SegmentsCommand>();
-  CLI::App* command = addCommand(app, "segments", kSegmentsHelp);
-  addLaserOptions(*command, options->input);
-  command
-      ->add_option("-o,--output", options->outputs,
-                   "map to write: .pcd, .svg, .geojson or .csv; may be given several times")
-      ->allow_extra_args(false);
-  command->add_flag("--force", options->force, "replace existing outputs");
-  command->add_flag("--evidence", options->evidence, "draw the evidence of the segments into the .svg");
-  command->add_option("--every", options->every, "map every N-th scan only, beginning with the first")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
-  command->add_option("--stats", options->stats, "write what each scan changed (.csv)");
-  command->add_option("--evaluate", options->evaluate,
-                      "score the map on a log, scan or directory; of an input, on the scans that --every leaves out");
-  command->add_option("--walls", options->walls, "score the map against true walls (walls.pcd of simulate plan)");
-  addFitterOptions(*command, options->fitter);
-  addJson(*command, options->json);
-  command->callback([command, options] { run(*command, *options); });
+  Command command(app, "segments", kSegmentsHelp);
+  addLaserOptions(command, options->input);
+  command.texts("-o,--output", options->outputs, "map to write: .pcd, .svg, .geojson or .csv; repeatable").onePerUse();
+  command.force(options->force, "replace existing outputs");
+  command.flag("--evidence", options->evidence, "draw the evidence of the segments into the .svg");
+  command.number("--every", options->every, 1, 1000000, "map every N-th scan only, beginning with the first");
+  command.text("--stats", options->stats, "write what each scan changed (.csv)");
+  command.text("--evaluate", options->evaluate,
+               "score the map on a log, scan or directory; of an input, on the scans that --every leaves out");
+  command.text("--walls", options->walls, "score the map against true walls (walls.pcd of simulate plan)");
+  addFitterOptions(command, options->fitter);
+  command.json(options->json);
+  command.onRun([command, options] { run(command, *options); });
 }
 
 }  // namespace gaussmap::app

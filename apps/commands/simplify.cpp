@@ -7,7 +7,7 @@
 #include "commands/budget.h"
 #include "commands/commands.h"
 #include "commands/map_task.h"
-#include "common/options.h"
+#include "common/command.h"
 #include "common/report.h"
 
 namespace gaussmap::app {
@@ -75,13 +75,13 @@ void run(const SimplifyCommand& command) {
 
 void addSimplify(CLI::App& app) {
   auto options = std::make_shared<SimplifyCommand>();
-  CLI::App* command = addCommand(app, "simplify", kSimplifyHelp);
-  addMapToMap(*command, *options);
-  addLimitOptions(*command, options->limit);
-  addCostOption(*command, options->limit);
-  addRunOptions(*command, *options);
-  command->callback([options, command] {
-    options->has_budget = command->count("--budget") > 0;
+  Command command(app, "simplify", kSimplifyHelp);
+  addMapToMap(command, *options);
+  addLimitOptions(command, options->limit).hideDefault();
+  addCostOption(command, options->limit);
+  addRunOptions(command, *options);
+  command.onRun([options, command] {
+    options->has_budget = command.isGiven("--budget");
     run(*options);
   });
 }

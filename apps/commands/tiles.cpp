@@ -5,7 +5,7 @@
 
 #include "commands/commands.h"
 #include "commands/map_task.h"
-#include "common/options.h"
+#include "common/command.h"
 #include "gaussmap/io/export/map_tiles.h"
 #include "gaussmap/io/pcd/map_pcd.h"
 
@@ -57,24 +57,15 @@ void fromTiles(const TilesCommand& command) {
 
 void addTiles(CLI::App& app) {
   auto options = std::make_shared<TilesCommand>();
-  CLI::App* command = addCommand(app, "tiles", kTilesHelp);
-  command->add_option("map", options->map, "map (.gmap, or PCD of Gaussians), or a directory of tiles")->required();
-  addOutput(*command, options->output, "directory, or map file (.gmap), to write");
-  command->add_option("--size", options->size, "side of a tile [m]")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
-  CLI::Option* scale = command->add_option("--scale", options->scale, "the scale that is written, 0 = finest")
-                           ->check(CLI::Range(0, 63))
-                           ->capture_default_str();
-  command->add_flag("--all-scales", options->all_scales, "write all scales, so that the way back rebuilds nothing")
-      ->excludes(scale);
-  addJson(*command, options->json);
-  command->callback([options] {
-    if (std::filesystem::is_directory(options->map))
-      fromTiles(*options);
-    else
-      toTiles(*options);
-  });
+  Command command(app, "tiles", kTilesHelp);
+  command.text("map", options->map, "map (.gmap, or PCD of Gaussians), or a directory of tiles").required();
+  command.output(options->output, "directory, or map file (.gmap), to write");
+  command.number("--size", options->size, 1, 1000000, "side of a tile [m]");
+  const Option scale = command.scale(options->scale, "the scale that is written, 0 = finest");
+  command.flag("--all-scales", options->all_scales, "write all scales, so that the way back rebuilds nothing")
+      .excludes(scale);
+  command.json(options->json);
+  command.onRun([options] { std::filesystem::is_directory(options->map) ? fromTiles(*options) : toTiles(*options); });
 }
 
 }  // namespace gaussmap::app

@@ -5,7 +5,7 @@
 #include "commands/commands.h"
 #include "commands/map_task.h"
 #include "commands/motion.h"
-#include "common/options.h"
+#include "common/command.h"
 
 namespace gaussmap::app {
 namespace {
@@ -47,12 +47,12 @@ void run(const TransformCommand& command) {
 
 void addTransform(CLI::App& app) {
   auto options = std::make_shared<TransformCommand>();
-  CLI::App* command = addCommand(app, "transform", kTransformHelp);
-  addMapToMap(*command, *options);
-  addMotionOptions(*command, options->motion);
-  command->add_flag("--inverse", options->inverse, "the inverse: from the target frame into the frame of the map");
-  addRunOptions(*command, *options);
-  command->callback([options] { run(*options); });
+  Command command(app, "transform", kTransformHelp);
+  addMapToMap(command, *options);
+  addMotionOptions(command, options->motion);
+  command.flag("--inverse", options->inverse, "the inverse: from the target frame into the frame of the map");
+  addRunOptions(command, *options);
+  command.onRun([options] { run(*options); });
 }
 
 }  // namespace gaussmap::app

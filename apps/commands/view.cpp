@@ -2,11 +2,11 @@
 // gaussmap view: hands over to gaussmap-view, a program of its own, so that no other command has to load VTK.
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <stdexcept>
 
 #include "commands/commands.h"
-#include "common/options.h"
 
 namespace gaussmap::app {
 namespace {

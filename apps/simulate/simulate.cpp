@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "commands/commands.h"
-#include "common/options.h"
+#include "common/command.h"
 #include "gaussmap/io/export/segment_files.h"
 #include "gaussmap/io/pcd/pcd_writer.h"
 #include "gaussmap/io/ply/ply.h"
@@ -104,30 +104,25 @@ void run(const SimulateCommand& options) {
 
 void addSimulate(CLI::App& app) {
   auto options = std::make_shared<SimulateCommand>();
-  CLI::App* command = addCommand(app, "simulate", kSimulateHelp);
-  command->add_option("scene", options->scene, "what to scan")->check(CLI::IsMember(kWorlds))->capture_default_str();
-  addOutput(*command, options->output, "directory to write to");
+  Command command(app, "simulate", kSimulateHelp);
+  command.choice("scene", options->scene, Command::wordsOf(kWorlds), "what to scan");
+  command.output(options->output, "directory to write to");
   command
-      ->add_option("--scans", options->world.scans,
-                   "number of scans, spread over the path of the scene; default: 5 to 240, by scene")
-      ->check(CLI::Range(1, 100000));
-  command->add_flag("--moving", options->world.moving, "three cars drive and two pedestrians walk through the street");
-  command->add_option("--noise", options->noise, "standard deviation of the ranges [m]")
-      ->check(numberBetween(0.0, 1e3))
-      ->capture_default_str();
-  command->add_option("--rings", options->rings, "rings of the lidar; default: 32, street 64")
-      ->check(CLI::Range(1, 1000));
-  command
-      ->add_option("--columns", options->columns,
-                   "directions per turn, or beams of the planar laser; default: 1800, plan 361")
-      ->check(CLI::Range(1, 100000));
-  command->add_option("--field-of-view", options->field, "field of view of the planar laser [degree]; default: 180")
-      ->check(numberBetween(1.0, 360.0));
-  command->add_option("--max-range", options->max_range, "range of the sensor [m]; default: 60, street 80, plan 30")
-      ->check(numberBetween(1e-3, 1e9));
-  addSeed(*command, options->seed, "seed of the noise");
-  addThreads(*command, options->threads);
-  command->callback([options] { run(*options); });
+      .number("--scans", options->world.scans, 1, 100000,
+              "number of scans, spread over the path of the scene; default: 5 to 240, by scene")
+      .hideDefault();
+  command.flag("--moving", options->world.moving, "three cars drive and two pedestrians walk through the street");
+  command.number("--noise", options->noise, 0.0, 1e3, "standard deviation of the ranges [m]");
+  command.number("--rings", options->rings, 1, 1000, "rings of the lidar; default: 32, street 64");
+  command.number("--columns", options->columns, 1, 100000,
+                 "directions per turn, or beams of the planar laser; default: 1800, plan 361");
+  command.number("--field-of-view", options->field, 1.0, 360.0,
+                 "field of view of the planar laser [degree]; default: 180");
+  command.number("--max-range", options->max_range, 1e-3, 1e9,
+                 "range of the sensor [m]; default: 60, street 80, plan 30");
+  command.seed(options->seed, "seed of the noise");
+  command.threads(options->threads);
+  command.onRun([options] { run(*options); });
 }
 
 }  // namespace gaussmap::app

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // gaussmap-view MAP [CLOUD...]: what `gaussmap view` starts.
+#include <CLI/CLI.hpp>
 #include <charconv>
 #include <iostream>
 #include <map>
@@ -7,7 +8,7 @@
 #include <stdexcept>
 
 #include "commands/scan_input.h"
-#include "common/options.h"
+#include "common/command.h"
 #include "common/report.h"
 #include "common/signals.h"
 #include "gaussmap/io/export/segment_files.h"
@@ -123,38 +124,26 @@ void run(ViewCommand command) {
             << humanBytes(std::filesystem::file_size(command.png.path)) << '\n';
 }
 
-void addOptions(CLI::App& app, ViewCommand& command) {
-  app.add_option("map", command.map, "map (.gmap, or PCD of Gaussians or of segments)")->required();
-  app.add_option("cloud", command.cloud.paths, "PCD files or directories, shown over the map");
-  addScanOptions(app, command.cloud);
-  app.add_option("--scale", command.scale, "which scale, 0 = finest; default: the finest of at most 200,000 Gaussians")
-      ->check(CLI::Range(0, 63));
-  app.add_flag("--leaves", command.leaves, "all leaves of a compressed map");
-  app.add_option("--color", command.colour,
+void addOptions(Command& command, ViewCommand& options) {
+  command.text("map", options.map, "map (.gmap, or PCD of Gaussians or of segments)").required();
+  command.texts("cloud", options.cloud.paths, "PCD files or directories, shown over the map");
+  addScanOptions(command, options.cloud);
+  command.scale(options.scale, "which scale, 0 = finest; default: the finest of at most 200,000 Gaussians");
+  command.flag("--leaves", options.leaves, "all leaves of a compressed map");
+  command.choice("--color", options.colour, {"height", "scale", "normal", "weight", "occupancy", "error"},
                  "height (default), scale, normal, weight, occupancy, or error: distance to the CLOUD, or without a "
-                 "CLOUD to the finer scales")
-      ->check(CLI::IsMember({"height", "scale", "normal", "weight", "occupancy", "error"}));
-  app.add_option("--sigma", command.view.sigma, "half axes of the ellipsoids, in standard deviations")
-      ->check(numberBetween(0.01, 100.0))
-      ->capture_default_str();
-  app.add_flag("--cells", command.view.cells, "draw the occupied cells as boxes");
-  app.add_flag("--hierarchy", command.view.hierarchy,
+                 "CLOUD to the finer scales");
+  command.number("--sigma", options.view.sigma, 0.01, 100.0, "half axes of the ellipsoids, in standard deviations");
+  command.flag("--cells", options.view.cells, "draw the occupied cells as boxes");
+  command.flag("--hierarchy", options.view.hierarchy,
                "draw all scales, one above the other, with links to the children");
-  app.add_option("--up", command.up, "the axis that points up")
-      ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))
-      ->capture_default_str();
-  app.add_option("--view", command.from, "top, iso, or x,y,z: the direction from the map to the eye")
-      ->capture_default_str();
-  app.add_option("--zoom", command.view.view.zoom, "1 = all of the map")
-      ->check(numberBetween(0.01, 1000.0))
-      ->capture_default_str();
-  app.add_option("--at", command.at, "the point to look at [m]; default: the middle")
-      ->expected(3)
-      ->type_name("X Y Z")
-      ->check(numberBetween(-1e9, 1e9));
-  app.add_option("--png", command.png.path, "save a picture instead of opening a window; needs no display");
-  app.add_option("--size", command.size, "of the picture or window [pixels]")->capture_default_str();
-  app.add_flag("--force", command.png.force, "replace an existing picture");
+  command.choice("--up", options.up, Command::wordsOf(kUp), "the axis that points up");
+  command.text("--view", options.from, "top, iso, or x,y,z: the direction from the map to the eye");
+  command.number("--zoom", options.view.view.zoom, 0.01, 1000.0, "1 = all of the map");
+  command.numbers("--at", options.at, 3, -1e9, 1e9, "the point to look at [m]; default: the middle").type("X Y Z");
+  command.text("--png", options.png.path, "save a picture instead of opening a window; needs no display");
+  command.text("--size", options.size, "size of the picture or window [pixels]");
+  command.force(options.png.force, "replace an existing picture");
 }
 
 }  // namespace
@@ -165,14 +154,14 @@ int main(int argc, char** argv) {
   handleSignals("gaussmap");
   CLI::App app("", "gaussmap view");
   app.set_help_all_flag("--help-all", "show all options, and the keys");
-  setHelp(app, {"Look at a map in a window, or save a picture (--png)",
-                "gaussmap view street.gmap --scale 1 --color normal --png street.png --size 1600x900",
-                "Keys:\n" + gaussmap::Viewer::helpText()});
-  ViewCommand command;
-  addOptions(app, command);
+  Command command(app, {"Look at a map in a window, or save a picture (--png)",
+                        "gaussmap view street.gmap --scale 1 --color normal --png street.png --size 1600x900",
+                        "Keys:\n" + gaussmap::Viewer::helpText()});
+  ViewCommand options;
+  addOptions(command, options);
   try {
     app.parse(argc, argv);
-    run(command);
+    run(options);
     return 0;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help

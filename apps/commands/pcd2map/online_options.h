@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "commands/budget.h"
-#include "common/usage.h"
+#include "common/command.h"
 #include "gaussmap/mapping/online/online_mapper.h"
 
 namespace gaussmap::app {
@@ -15,12 +15,11 @@ namespace gaussmap::app {
 struct OnlineInput {
   bool on = false;
   OnlineOptions options;
-  double no_return_is_free = 0.0;  // [m], 0: not given
-  bool keep = false;               // delete nothing
-  std::string stats;               // CSV file
-  std::string removed;             // PCD file
+  bool keep = false;    // delete nothing
+  std::string stats;    // CSV file
+  std::string removed;  // PCD file
 };
-void addOnlineOptions(CLI::App& command, OnlineInput& input);
+void addOnlineOptions(Command& command, OnlineInput& input);
 
 /// Throws UsageError for options that on-line mapping does not have, or outputs that cannot be written. `map` is the
 /// main output.

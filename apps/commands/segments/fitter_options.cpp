@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "common/options.h"
+#include "common/command.h"
 
 namespace gaussmap::app {
 namespace {
@@ -49,68 +49,51 @@ ViewpointDependentOptions dependentOptions(const FitterInput& input) {
 
 }  // namespace
 
-void addFitterOptions(CLI::App& command, FitterInput& input) {
+void addFitterOptions(Command& command, FitterInput& input) {
   SegmentFitterOptions& options = input.options;
-  const auto own = [](CLI::Option* option) { return option->group(kGroup); };
-  own(command.add_option("--utility", input.utility, "what decides about split and merge"))
-      ->check(CLI::IsMember({"description-length", "viewpoint-invariant", "viewpoint-dependent"}))
-      ->capture_default_str();
-  own(command.add_option("--policy", options.policy, "what a segment remembers: moments in cells, or particles"))
-      ->transform(CLI::CheckedTransformer(kPolicies, CLI::ignore_case))
-      ->default_str("moments");
-  own(command.add_option("--l-min", input.min_length,
-                         "shortest segment that the utilities of the paper split, bound of particles [m]; default: 1"))
-      ->check(numberBetween(1e-3, 1e6));
-  own(command.add_option("--sigma", input.sigma,
-                         "standard deviation across a segment: expected (description-length, default 0.03) or allowed "
-                         "(utilities of the paper, default 0.06) [m]"))
-      ->check(numberBetween(1e-6, 1e6));
-  own(command.add_option("--segment-cost", input.segment_cost,
-                         "cost of a segment for description-length [nat]; default: 3"))
-      ->check(numberBetween(0.0, 1e9));
-  own(command.add_option(
-          "--merge-ratio", input.merge_ratio,
-          "alpha: the utilities of the paper merge below this part of the allowed variance; default: 0.5"))
-      ->check(numberBetween(0.0, 0.999999));
-  own(command.add_option("--viewpoint", input.viewpoint,
-                         "x y r: more detail within the distance r of (x, y) [m]; for --utility viewpoint-dependent"))
-      ->expected(3)
-      ->check(numberBetween(-1e9, 1e9));
-  own(command.add_option(
-          "--view-radius", input.view_radius,
-          "more detail within this distance of the sensor [m]; for --utility viewpoint-dependent; default: 5"))
-      ->check(numberBetween(1e-3, 1e9));
-  own(command.add_option("--view-scale", input.view_scale, "--l-min in that area, as a part of --l-min; default: 0.33"))
-      ->check(numberBetween(1e-3, 1.0));
-  own(command.add_option("--range-noise", options.noise.range, "standard deviation of the laser's ranges [m]"))
-      ->check(numberBetween(0.0, 100.0))
-      ->capture_default_str();
-  own(command.add_option("--bearing-noise", options.noise.bearing, "standard deviation of its bearings [rad]"))
-      ->check(numberBetween(0.0, 1.0))
-      ->capture_default_str();
-  own(command.add_option("--particles", options.particles.samples, "particles per observation"))
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
-  own(command.add_option("--per-metre", options.particles.per_metre, "particles kept per metre of segment"))
-      ->check(numberBetween(1e-3, 1e9))
-      ->capture_default_str();
-  own(command.add_option(
-          "--particle-limit", options.particles.limit,
-          "where surplus particles are dropped: in the stretch that has too many, or in the segment (paper)"))
-      ->transform(CLI::CheckedTransformer(kLimits, CLI::ignore_case))
-      ->default_str("bins");
-  own(command.add_flag("--no-prune", input.no_prune, "keep segments that many rays pass through"));
-  own(command.add_flag(
-      "--no-refine", input.no_refine,
-      "do not refine the map as a whole after the last scan; always so with the utilities of the paper"));
-  own(addSeed(command, options.particles.seed, "seed of the particles"));
+  for (const Option& option : {
+           command.choice("--utility", input.utility,
+                          {"description-length", "viewpoint-invariant", "viewpoint-dependent"},
+                          "what decides about split and merge"),
+           command.choiceOf("--policy", options.policy, kPolicies,
+                            "what a segment remembers: moments in cells, or particles"),
+           command.number("--l-min", input.min_length, 1e-3, 1e6,
+                          "shortest segment that the utilities of the paper split, bound of particles [m]; default: 1"),
+           command.number("--sigma", input.sigma, 1e-6, 1e6,
+                          "standard deviation across a segment: expected (description-length, default 0.03) or allowed "
+                          "(utilities of the paper, default 0.06) [m]"),
+           command.number("--segment-cost", input.segment_cost, 0.0, 1e9,
+                          "cost of a segment for description-length [nat]; default: 3"),
+           command.number(
+               "--merge-ratio", input.merge_ratio, 0.0, 0.999999,
+               "alpha: the utilities of the paper merge below this part of the allowed variance; default: 0.5"),
+           command.numbers("--viewpoint", input.viewpoint, 3, -1e9, 1e9,
+                           "x y r: more detail within the distance r of (x, y) [m]; for --utility viewpoint-dependent"),
+           command.number(
+               "--view-radius", input.view_radius, 1e-3, 1e9,
+               "more detail within this distance of the sensor [m]; for --utility viewpoint-dependent; default: 5"),
+           command.number("--view-scale", input.view_scale, 1e-3, 1.0,
+                          "--l-min in that area, as a part of --l-min; default: 0.33"),
+           command.number("--range-noise", options.noise.range, 0.0, 100.0,
+                          "standard deviation of the laser's ranges [m]"),
+           command.number("--bearing-noise", options.noise.bearing, 0.0, 1.0,
+                          "standard deviation of its bearings [rad]"),
+           command.number("--particles", options.particles.samples, 1, 100000, "particles per observation"),
+           command.number("--per-metre", options.particles.per_metre, 1e-3, 1e9, "particles kept per metre of segment"),
+           command.choiceOf("--particle-limit", options.particles.limit, kLimits,
+                            "where surplus particles are dropped: in the stretch that has too many (bins), or in the "
+                            "segment (paper)"),
+           command.flag("--no-prune", input.no_prune, "keep segments that many rays pass through"),
+           command.flag("--no-refine", input.no_refine,
+                        "do not refine the map as a whole after the last scan; always so with the utilities of the "
+                        "paper"),
+           command.seed(options.particles.seed, "seed of the particles"),
+       })
+    option.group(kGroup);
 }
 
-std::string givenFitterOption(const CLI::App& command) {
-  for (const CLI::Option* option :
-       command.get_options([](const CLI::Option* o) { return o->get_group() == kGroup && o->count() > 0; }))
-    return option->get_name();
-  return "";
+std::string givenFitterOption(const Command& command) {
+  return command.givenOf(kGroup);
 }
 
 SegmentFitterOptions fitterOptions(const FitterInput& input) {

@@ -6,11 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "common/command.h"
 #include "gaussmap/segments/segment_fitter.h"
-
-namespace CLI {
-class App;
-}
 
 namespace gaussmap::app {
 
@@ -24,9 +21,9 @@ struct FitterInput {
 };
 
 /// Adds all of them, as a group of their own.
-void addFitterOptions(CLI::App& command, FitterInput& input);
+void addFitterOptions(Command& command, FitterInput& input);
 /// The name of an option of this group that was given, empty if none was.
-std::string givenFitterOption(const CLI::App& command);
+std::string givenFitterOption(const Command& command);
 
 /// Throws UsageError for an option that the chosen utility or policy does not have.
 SegmentFitterOptions fitterOptions(const FitterInput& input);

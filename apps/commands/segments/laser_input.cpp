@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "common/options.h"
+#include "common/command.h"
 #include "common/report.h"
 
 #include "gaussmap/io/logs/carmen_log.h"
@@ -53,21 +53,18 @@ LaserScans readPcds(const LaserInput& input) {
 
 }  // namespace
 
-void addLaserOptions(CLI::App& command, LaserInput& input) {
+void addLaserOptions(Command& command, LaserInput& input) {
   command
-      .add_option("scans", input.scans.paths,
-                  "CARMEN logs (.log, .log.gz), or PCD scans of a planar laser, or directories of them")
-      ->required();
+      .texts("scans", input.scans.paths,
+             "CARMEN logs (.log, .log.gz), or PCD scans of a planar laser, or directories of them")
+      .required();
   addScanOptions(command, input.scans);
-  command.add_option("--slice", input.slice, "use the points of 3-D scans between two heights of the map [m]")
-      ->expected(2)
-      ->check(numberBetween(-1e6, 1e6));
-  rare(command.add_option("--position-noise", input.position_noise, "standard deviation of the poses' x and y [m]"))
-      ->check(numberBetween(0.0, 100.0))
-      ->capture_default_str();
-  rare(command.add_option("--heading-noise", input.heading_noise, "standard deviation of the poses' heading [rad]"))
-      ->check(numberBetween(0.0, 1.0))
-      ->capture_default_str();
+  command.numbers("--slice", input.slice, 2, -1e6, 1e6,
+                  "use the points of 3-D scans between two heights of the map [m]");
+  command.number("--position-noise", input.position_noise, 0.0, 100.0, "standard deviation of the poses' x and y [m]")
+      .rare();
+  command.number("--heading-noise", input.heading_noise, 0.0, 1.0, "standard deviation of the poses' heading [rad]")
+      .rare();
 }
 
 LaserScans readLaserScans(const LaserInput& input) {

@@ -6,11 +6,8 @@
 #include <vector>
 
 #include "commands/scan_input.h"
+#include "common/command.h"
 #include "gaussmap/segments/laser_scan.h"
-
-namespace CLI {
-class App;
-}
 
 namespace gaussmap::app {
 
@@ -23,7 +20,7 @@ struct LaserInput {
 };
 
 /// Adds the positional IN... and the options that say how they are read.
-void addLaserOptions(CLI::App& command, LaserInput& input);
+void addLaserOptions(Command& command, LaserInput& input);
 
 struct LaserScans {
   std::vector<LaserScan> scans;

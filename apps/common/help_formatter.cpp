@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "common/help.h"
+#include "common/help_formatter.h"
 
-#include <memory>
 #include <sstream>
 
 namespace gaussmap::app {
@@ -89,19 +88,8 @@ class HelpFormatter : public CLI::Formatter {
 
 }  // namespace
 
-CLI::App* addCommand(CLI::App& app, const std::string& name, const Help& help) {
-  CLI::App* const command = app.add_subcommand(name, help.summary);
-  command->formatter(std::make_shared<HelpFormatter>(help));
-  return command;
-}
-
-void setHelp(CLI::App& app, const Help& help) {
-  app.description(help.summary);
-  app.formatter(std::make_shared<HelpFormatter>(help));
-}
-
-CLI::Option* rare(CLI::Option* option) {
-  return option->group("More options");
+std::shared_ptr<CLI::Formatter> makeHelpFormatter(const Help& help) {
+  return std::make_shared<HelpFormatter>(help);
 }
 
 }  // namespace gaussmap::app
