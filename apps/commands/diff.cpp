@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // gaussmap diff A B: what is new, gone, changed in B.
-#include <array>
 #include <cstdio>
 #include <memory>
 
@@ -10,7 +9,7 @@
 #include "common/report.h"
 #include "gaussmap/editing/diff_maps.h"
 #include "gaussmap/io/pcd/map_pcd.h"
-#include "gaussmap/io/pcd/pcd_writer.h"
+#include "io/export/diff_pcd.h"
 
 namespace gaussmap::app {
 namespace {
@@ -30,43 +29,6 @@ x y z covariance[6] weight p_value label. Labels: 0 the same, or too few points 
 What the sensors of the second map never observed counts as gone too. At refined scales, clusters can differ because
 the same surface was divided in another way: compare the finest scale.)"};
 
-/// A point of the file.
-struct Row {
-  std::array<float, 3> mean;
-  std::array<float, 6> covariance;
-  float weight, p_value;
-  std::uint32_t label;
-};
-
-Row rowOf(const GaussianMap<3>& map, std::size_t index, int s, const Eigen::Vector3d& origin, const Difference& one) {
-  const Gaussian<3> gaussian = map.gaussian(index, s);
-  const Eigen::Vector3f mean = (gaussian.mean - origin).cast<float>();
-  const Eigen::Matrix3f cov = gaussian.cov.cast<float>();
-  return {{mean.x(), mean.y(), mean.z()},
-          {cov(0, 0), cov(0, 1), cov(0, 2), cov(1, 1), cov(1, 2), cov(2, 2)},
-          static_cast<float>(gaussian.weight),
-          static_cast<float>(one.p_value),
-          static_cast<std::uint32_t>(one.change)};
-}
-
-/// All Gaussians of the second map, and those of the first that are gone.
-void writeDiff(const GaussianMap<3>& first, const GaussianMap<3>& second, const MapDiff& diff, int s,
-               const std::string& path) {
-  const Eigen::Vector3d origin = toRecords(second, s).origin;
-  std::vector<Row> rows;
-  for (std::size_t i = 0; i < diff.second.size(); ++i) rows.push_back(rowOf(second, i, s, origin, diff.second[i]));
-  for (std::size_t i = 0; i < diff.first.size(); ++i)
-    if (diff.first[i].change == Change::Gone) rows.push_back(rowOf(first, i, s, origin, diff.first[i]));
-  const Row none{};
-  const Row& row = rows.empty() ? none : rows.front();
-  const std::vector<PcdOutput> fields = {
-      pcdOutput("x", &row.mean[0], 1, sizeof(Row)),     pcdOutput("y", &row.mean[1], 1, sizeof(Row)),
-      pcdOutput("z", &row.mean[2], 1, sizeof(Row)),     pcdOutput("covariance", row.covariance.data(), 6, sizeof(Row)),
-      pcdOutput("weight", &row.weight, 1, sizeof(Row)), pcdOutput("p_value", &row.p_value, 1, sizeof(Row)),
-      pcdOutput("label", &row.label, 1, sizeof(Row))};
-  writePcd(path, rows.size(), fields, Pose{origin, Pose::Rotation::Identity()});
-}
-
 void run(const DiffCommand& options) {
   if (!options.output.empty()) {
     requireExtension(options.output, ".pcd");
@@ -78,7 +40,7 @@ void run(const DiffCommand& options) {
   checkScale("--scale", s, first.scales(), options.first);
   checkScale("--scale", s, second.scales(), options.second);
   const MapDiff diff = diffMaps<3>(first, second, options.diff);
-  if (!options.output.empty()) writeDiff(first, second, diff, s, options.output);
+  if (!options.output.empty()) detail::writeDiffPcd(options.output, first, second, diff, s);
   const std::size_t none = diff.count(Change::None), fresh = diff.count(Change::New), gone = diff.count(Change::Gone),
                     changed = diff.count(Change::Changed);
   if (options.json) {

@@ -2,11 +2,11 @@
 // gaussmap view: hands over to gaussmap-view, a program of its own, so that no other command has to load VTK.
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <stdexcept>
 
 #include "commands/commands.h"
+#include "common/command.h"
 
 namespace gaussmap::app {
 namespace {
@@ -31,11 +31,7 @@ void startViewer(const std::vector<std::string>& arguments) {
 }  // namespace
 
 void addView(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("view", "Look at a map in a window, or save a picture (--png)");
-  command->prefix_command();
-  command->set_help_flag();  // the viewer has its own
-  command->set_help_all_flag();
-  command->callback([command] { startViewer(command->remaining()); });
+  Command(app, "view", {"Look at a map in a window, or save a picture (--png)", "", ""}).passOn(startViewer);
 }
 
 }  // namespace gaussmap::app

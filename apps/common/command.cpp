@@ -238,4 +238,11 @@ void Command::onRun(const std::function<void()>& run) {
   app_->callback(run);
 }
 
+void Command::passOn(const std::function<void(const std::vector<std::string>&)>& run) {
+  app_->prefix_command();
+  app_->set_help_flag();
+  app_->set_help_all_flag();
+  app_->callback([app = app_, run] { run(app->remaining()); });
+}
+
 }  // namespace gaussmap::app

@@ -109,6 +109,8 @@ class Command {
 
   /// What the command does, after its options have been read.
   void onRun(const std::function<void()>& run);
+  /// Leaves all words after the name of the command, also --help, to `run`.
+  void passOn(const std::function<void(const std::vector<std::string>&)>& run);
 
  private:
   Option choice(const std::string& name, const std::vector<std::string>& words, const std::string& now,
