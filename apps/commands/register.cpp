@@ -119,7 +119,8 @@ void addRegister(CLI::App& app) {
   auto options = std::make_shared<RegisterCommand>();
   Command command(app, "register", kRegisterHelp);
   command.texts("inputs", options->inputs, "scans (.pcd files or directories of them) or maps, then the map")
-      .required();
+      .required()
+      .atLeast(2);
   command.numbers("--guess", options->guess, 7, -1e12, 1e12,
                   "pose at which the search for the first scan starts: x y z qx qy qz qw");
   command.text("--tum", options->tum, "write the poses, one line per scan: number x y z qx qy qz qw");

@@ -12,9 +12,9 @@
 #include "gaussmap/io/scans/pose_checks.h"
 #include "gaussmap/io/scans/pose_file.h"
 #include "gaussmap/io/scans/scan_list.h"
+#include "gaussmap/sensor/projection.h"
 
 namespace gaussmap::app {
-using namespace detail;
 
 void addScanPaths(Command& command, ScanInput& input) {
   command.texts("scans", input.paths, "PCD files, or directories of them (in natural order)").required();

@@ -100,6 +100,10 @@ Option Option::hideDefault() const {
   option_->default_str("");
   return *this;
 }
+Option Option::atLeast(int count) const {
+  option_->expected(count, -1);
+  return *this;
+}
 Option Option::onePerUse() const {
   option_->allow_extra_args(false);
   return *this;

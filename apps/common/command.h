@@ -35,7 +35,8 @@ class Option {
   Option excludes(const Option& other) const;
   Option type(const std::string& name) const;  ///< what the help calls its value
   Option hideDefault() const;
-  Option onePerUse() const;  ///< may be given several times, with one value each
+  Option atLeast(int count) const;  ///< so many values
+  Option onePerUse() const;         ///< may be given several times, with one value each
   Option valueMayBeMissing(const std::string& then) const;
 
  private:
