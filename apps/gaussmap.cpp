@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The command line: parses, runs one command, turns every error into one line on stderr and an exit code.
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
 #include <iostream>
 #include <new>
 
-#include "common.h"
-#include "io/files/signals.h"
+#include "commands/commands.h"
+#include "common/signals.h"
+#include "common/usage.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap::app {
-using namespace detail;
 
 namespace {
 
@@ -44,9 +46,10 @@ int complain(std::string text, int code) {
 
 int main(int argc, char** argv) {
   using namespace gaussmap::app;
-  gaussmap::detail::handleSignals("gaussmap");
+  handleSignals("gaussmap");
   CLI::App app("Compact multi-scale Gaussian maps from range scans", "gaussmap");
   app.set_version_flag("--version", "gaussmap " GAUSSMAP_VERSION);
+  app.set_help_all_flag("--help-all", "show all options, and explanations");
   app.require_subcommand(1);
   app.footer("Example: gaussmap pcd2map scans/ -o street.gmap && gaussmap info street.gmap");
   addPcd2map(app);

@@ -28,11 +28,11 @@ clang-format --dry-run -Werror "${all[@]}"
 echo "clang-format: ${#all[@]} files, formatted"
 
 cppcheck --std=c++17 --language=c++ --enable=warning,performance,portability --inline-suppr \
-  --suppressions-list=.cppcheck --error-exitcode=1 -I include -I src --quiet -j 2 src apps include
+  --suppressions-list=.cppcheck --error-exitcode=1 -I include -I src -I apps --quiet -j 2 src apps include
 echo "cppcheck: clean"
 [[ ${1:-} != --quick ]] || exit 0
 
-selection=('src/*.cpp' 'apps/*.cpp' ':!src/pcl' ':!src/viewer' ':!apps/view_main.cpp')
+selection=('src/*.cpp' 'apps/*.cpp' ':!src/pcl' ':!src/viewer' ':!apps/viewer')
 case "${1:-}" in
   --changed)
     base=${2:-$(git rev-list --max-count=6 HEAD | tail -n 1)}

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Help, and wrong usage: exit code 2.
+#include <sstream>
+
 #include "apps/app_fixture.h"
 #include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/io/pcd/map_pcd.h"
@@ -9,8 +11,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> kCommands = {"pcd2map",   "refine",   "info", "export",
-                                            "hausdorff", "simulate", "draw", "segments"};
+const std::vector<std::string> kCommands = {
+    "pcd2map", "refine", "compress", "register", "finish", "tiles",     "simplify", "merge", "transform", "crop",
+    "diff",    "clean",  "restore",  "info",     "export", "hausdorff", "simulate", "draw",  "segments"};
 
 TEST_F(Apps, ExplainThemselvesWithAnExample) {
   for (const std::string& command : kCommands) {
@@ -22,6 +25,28 @@ TEST_F(Apps, ExplainThemselvesWithAnExample) {
   EXPECT_NE(help.find("Example: gaussmap "), std::string::npos);
   for (const std::string& command : kCommands) EXPECT_NE(help.find("\n  " + command + " "), std::string::npos) << help;
   EXPECT_EQ(succeed({"--version"}).find("gaussmap 0."), 0u);
+}
+
+TEST_F(Apps, ShowCommonOptionsFirstAndAllWithHelpAll) {
+  for (const std::string& command : kCommands) {
+    const std::string help = succeed({command, "--help"}), all = succeed({command, "--help-all"});
+    EXPECT_LE(std::count(help.begin(), help.end(), '\n'), 30) << help;
+    EXPECT_GT(all.size(), help.size()) << all;
+    EXPECT_NE(all.find("Example: gaussmap " + command), std::string::npos) << all;
+    for (const std::string& text : {help, all}) {
+      std::istringstream lines(text);
+      for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120u) << line;
+    }
+  }
+  const auto isShown = [&](const std::string& option, const std::string& how) {
+    return succeed({"pcd2map", how}).find("  " + option + " ") != std::string::npos;
+  };
+  for (const char* const option : {"--resolution", "--budget"}) EXPECT_TRUE(isShown(option, "--help")) << option;
+  for (const char* const option : {"--ratio", "--max-memory", "--look-back"}) {
+    EXPECT_FALSE(isShown(option, "--help")) << option;
+    EXPECT_TRUE(isShown(option, "--help-all")) << option;
+  }
+  EXPECT_NE(succeed({"--help-all"}).find("--look-back"), std::string::npos);  // of all commands
 }
 
 TEST_F(Apps, RefuseCommandsThatAreNone) {

@@ -106,7 +106,8 @@ TEST_F(ViewApp, RefusesWrongUsageAndWrongData) {
 }
 
 TEST_F(ViewApp, HasHelpWithItsKeys) {
-  EXPECT_NE(succeed({"view", "--help"}).find("hierarchy: scales lifted"), std::string::npos);
+  EXPECT_NE(succeed({"view", "--help"}).find("Example: gaussmap view"), std::string::npos);
+  EXPECT_NE(succeed({"view", "--help-all"}).find("hierarchy: scales lifted"), std::string::npos);
 }
 
 TEST_F(Apps, WithoutTheViewerViewSaysHowToGetIt) {

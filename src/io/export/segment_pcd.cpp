@@ -108,6 +108,11 @@ void writeSegmentPcd(const std::filesystem::path& path, const SegmentMap& map) {
   writePcd(path, records.size(), fieldsOf(records.empty() ? none : records.front()), std::nullopt, 2);
 }
 
+bool isSegmentPcd(const std::filesystem::path& path) {
+  const PcdReader reader(path);
+  return reader.header().find("normal_variance") != nullptr && reader.header().find("chain") != nullptr;
+}
+
 SegmentMap readSegmentPcd(const std::filesystem::path& path) {
   const std::vector<Record> records = readRecords(path);
   SegmentMap map;

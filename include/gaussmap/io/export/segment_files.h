@@ -21,6 +21,9 @@ void writeSegmentPcd(const std::filesystem::path& path, const SegmentMap& map);
 /// impossible.
 SegmentMap readSegmentPcd(const std::filesystem::path& path);
 
+/// Has the PCD file the fields that writeSegmentPcd() writes? Throws FileError if it is not a PCD file.
+bool isSegmentPcd(const std::filesystem::path& path);
+
 /// GeoJSON: a FeatureCollection with one LineString a segment, free space on its left; coordinates are metres of the
 /// map frame, not degrees. Properties: chain, closed, length, normal_variance, offset_variance,
 /// offset_angle_covariance, angle_variance, weight, last_seen.

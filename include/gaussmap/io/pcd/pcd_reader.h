@@ -53,7 +53,7 @@ struct PcdColumn {
 /// One open PCD file (versions 0.5 to 0.7; ascii, binary, binary_compressed) with x, y and z as floats or doubles
 /// anywhere in it. No file makes it crash, hang, or ask for more memory than a small multiple of the file's size.
 /// Opening reads the header and checks it against the size of the file, but touches no point: thousands of scans
-/// may be open at once. A file that is made shorter meanwhile raises SIGBUS, see handleSignals() and requireWhole().
+/// may be open at once. A file that is made shorter meanwhile raises SIGBUS, see requireWhole().
 class PcdReader {
  public:
   /// Throws FileError, with the line of the header or the byte of the file and the way out.

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/budget.h"
+
+#include <charconv>
+#include <iostream>
+#include <map>
+
+#include "common/command.h"
+#include "common/report.h"
+#include "gaussmap/io/gmap/map_history.h"
+
+namespace gaussmap::app {
+namespace {
+
+const std::map<std::string, RefineMethod> kMethods = {{"agglomerate", RefineMethod::Agglomerate},
+                                                      {"insert", RefineMethod::Insert}};
+const std::map<std::string, MergeCost> kCosts = {{"volume", MergeCost::Volume}, {"runnalls", MergeCost::Runnalls}};
+
+bool isUnrefined(const GaussianMap<3>& map) {
+  for (int s = 1; s < map.scales(); ++s)
+    if (map.gaussianCount(s) != map.cellCount(s)) return false;
+  return true;
+}
+
+}  // namespace
+
+std::uintmax_t amountOf(const std::string& option, std::string_view text, bool suffix) {
+  std::uintmax_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  std::uintmax_t unit = 1;
+  const std::string_view rest(end, static_cast<std::size_t>(text.data() + text.size() - end));
+  if (suffix && rest == "k") unit = 1000;
+  if (suffix && rest == "M") unit = 1000000;
+  if (suffix && rest == "G") unit = 1000000000;
+  if (error != std::errc() || value == 0 || (unit == 1 && !rest.empty()) || value > UINTMAX_MAX / unit)
+    throw UsageError(option + " " + std::string(text) + ": is no whole number above 0" +
+                     (suffix ? ", with k, M or G behind it if you like" : ""));
+  return value * unit;
+}
+
+std::map<int, std::size_t> maxGaussians(const BudgetInput& input, const GaussianMap<3>& map, int first_scale) {
+  const std::vector<std::string>& words = input.max_gaussians;
+  const int scales = map.scales();
+  std::map<int, std::size_t> limits;
+  for (const std::string& word : words)
+    if (word.find('=') == std::string::npos)
+      for (int scale = std::max(first_scale, std::min(1, scales - 1)); scale < scales; ++scale)
+        limits[scale] = amountOf("--max-gaussians", word, true);
+  for (const std::string& word : words) {
+    const std::size_t equals = word.find('=');
+    if (equals == std::string::npos) continue;
+    int scale = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + equals, scale);
+    if (error != std::errc() || end != word.data() + equals || scale < first_scale || scale >= scales)
+      throw UsageError("--max-gaussians " + word + ": the scales are " + std::to_string(first_scale) + " to " +
+                       std::to_string(scales - 1));
+    limits[scale] = amountOf("--max-gaussians", std::string_view(word).substr(equals + 1), true);
+  }
+  for (const auto& [scale, most] : limits)
+    if (most < map.cellCount(scale))
+      throw UsageError("--max-gaussians " + std::to_string(most) + ": scale " + std::to_string(scale) + " has " +
+                       std::to_string(map.cellCount(scale)) +
+                       " occupied cells, which hold at least one each; take more, or coarser cells");
+  return limits;
+}
+
+Budget budgetOf(const BudgetInput& input, const GaussianMap<3>& map, int first_scale) {
+  if (!input.max_bytes.empty()) return MaxBytes{amountOf("--max-bytes", input.max_bytes, true), {}};
+  if (input.max_error > 0.0) return MaxError{input.max_error, {}};
+  if (!input.max_gaussians.empty()) return MaxGaussians{maxGaussians(input, map, first_scale)};
+  return PerCell{input.budget};
+}
+
+void measureFile(Budget& budget, const MapMetadata& metadata, int threads) {
+  if (const auto* bytes = std::get_if<MaxBytes>(&budget))
+    budget = maxFileBytes(bytes->bytes, metadata, {false, SaveOptions().compression, threads});
+}
+
+std::string detailsOf(const BudgetInput& input, Json step) {
+  if (input.cost) step["cost"] = *input.cost;
+  if (!input.max_gaussians.empty()) step["max_gaussians"] = input.max_gaussians;
+  return step.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+MergeCost mergeCost(const BudgetInput& input) {
+  return input.cost ? kCosts.at(*input.cost) : MergeCost::Volume;
+}
+
+Option addLimitOptions(Command& command, BudgetInput& input) {
+  const Option budget =
+      command.number("--budget", input.budget, 1.0, 1e6, "Gaussians per occupied cell of a coarse scale, on average");
+  command.texts("--max-gaussians", input.max_gaussians,
+                "most Gaussians of each coarse scale: N, or SCALE=N for one (repeatable)");
+  command.text("--max-bytes", input.max_bytes, "most bytes of the whole file, with suffix k, M or G");
+  command
+      .number("--max-error", input.max_error, 1e-9, 1e9,
+              "fewest Gaussians so that 95 % of the samples of a coarse scale lie within this distance of the finest "
+              "scale [m]")
+      .hideDefault();
+  command.exclusive({"--budget", "--max-gaussians", "--max-bytes", "--max-error"});
+  return budget;
+}
+
+void addCostOption(Command& command, BudgetInput& input) {
+  command
+      .choice(
+          "--cost", input.cost, Command::wordsOf(kCosts),
+          "cost of a merge (agglomerate): volume (default), the growth of the ellipsoids' volume; runnalls, the loss "
+          "of likelihood")
+      .rare();
+}
+
+void addBudgetOptions(Command& command, BudgetInput& input) {
+  addLimitOptions(command, input);
+  command
+      .choice("--method", input.method, Command::wordsOf(kMethods),
+              "agglomerate: merge the Gaussians of the finer scale until the budget is met; insert: split one cluster "
+              "after the other, as in the paper")
+      .rare();
+  addCostOption(command, input);
+  command.seed(input.refine.seed, "seed of the random swaps of --method insert").rare();
+}
+
+void checkBudget(const BudgetInput& input) {
+  if (!input.max_bytes.empty()) amountOf("--max-bytes", input.max_bytes, true);
+  if (input.method == "insert" && (!input.max_bytes.empty() || input.max_error > 0.0))
+    throw UsageError("--method insert: knows --budget and --max-gaussians only");
+  if (input.method == "insert" && input.cost) throw UsageError("--cost: for --method agglomerate only");
+}
+
+GaussianMap<3> refineWithin(GaussianMap<3> map, const BudgetInput& input, MapMetadata& metadata, Json step) {
+  Budget budget = budgetOf(input, map, 1);
+  RefineOptions options = input.refine;
+  options.method = kMethods.at(input.method);
+  options.merge_cost = mergeCost(input);
+  const auto* per_cell = std::get_if<PerCell>(&budget);
+  const bool one_per_cell = per_cell != nullptr && per_cell->gaussians == 1.0;
+  const bool is_searched = !input.max_bytes.empty() || input.max_error > 0.0;
+  if (is_searched || (input.curves && !one_per_cell && options.method == RefineMethod::Agglomerate))
+    options.curves.emplace();
+  recordStep(metadata, refineStep(budget, options, detailsOf(input, std::move(step))));
+  recordCurves(metadata, {});  // of the map as it was
+  if (one_per_cell && isUnrefined(map)) return map;
+  measureFile(budget, metadata, options.threads);
+  RefineResult<3> result = refine<3>(std::move(map), budget, options);
+  for (const NotReached& scale : result.not_reached)
+    std::cerr << "gaussmap: warning: scale " << scale.scale << " does not reach --max-error " << input.max_error
+              << ": with all that the finer scale's Gaussians allow 95 % are within " << scale.q95 << " m\n";
+  recordCurves(metadata, result.curves);
+  return std::move(result.map);
+}
+
+}  // namespace gaussmap::app

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// gaussmap clean SCANS... -o DIR: the scans without the points of moving objects.
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <map>
+#include <memory>
+
+#include "commands/commands.h"
+#include "commands/scan_input.h"
+#include "common/command.h"
+#include "common/json.h"
+#include "common/progress_bar.h"
+#include "common/report.h"
+#include "evaluation/removal_score.h"
+#include "gaussmap/mapping/moving/moving_points.h"
+#include "io/pcd/pcd_records.h"
+
+namespace gaussmap::app {
+using namespace detail;
+
+namespace {
+
+const Help kCleanHelp = {
+    "Remove the points of moving objects from scans", "gaussmap clean scans/ -o clean/ --removed removed.pcd",
+    R"(Finds cells that some scans hit and other scans see through. At least two scans that see the same places are
+needed. Every field and the VIEWPOINT of the scans are kept. In organised clouds, removed points become NaN.)"};
+
+struct CleanCommand {
+  ScanInput input;
+  MovingPointOptions options;
+  std::string folder, merged, removed, labels;
+  bool force = false;
+  bool json = false;
+
+  bool writes() const { return !folder.empty() || !merged.empty() || !removed.empty(); }
+};
+
+/// DIR/<name of the scan>. Throws UsageError if two scans have the same name.
+std::vector<std::filesystem::path> outputsFor(const PcdScans& scans, const std::string& folder) {
+  std::map<std::filesystem::path, std::filesystem::path> taken;
+  std::vector<std::filesystem::path> outputs;
+  for (const PcdScan& scan : scans.files()) {
+    const std::filesystem::path name = scan.path.filename();
+    const auto [entry, is_new] = taken.emplace(name, scan.path);
+    if (!is_new)
+      throw UsageError(scan.path.string() + " and " + entry->second.string() + " would both become " +
+                       (std::filesystem::path(folder) / name).string() + ": clean them apart, or use --merged");
+    outputs.push_back(std::filesystem::path(folder) / name);
+  }
+  return outputs;
+}
+
+/// Names of the cleaned scans. Checks all outputs, before any work is done, and makes the directory.
+std::vector<std::filesystem::path> checkedOutputs(const CleanCommand& command, const PcdScans& scans) {
+  std::vector<std::filesystem::path> inputs;
+  inputs.reserve(scans.size() + 1);
+  for (const PcdScan& scan : scans.files()) inputs.push_back(scan.path);
+  if (!command.input.poses.empty()) inputs.emplace_back(command.input.poses);
+  std::vector<std::filesystem::path> outputs;
+  if (!command.folder.empty()) outputs = outputsFor(scans, command.folder);
+  checkOutputs({command.merged, command.removed}, command.force, inputs, outputs);
+  if (command.folder.empty()) return {};
+  makeFolder(command.folder);
+  for (const std::filesystem::path& output : outputs) checkOutput({output.string(), command.force}, inputs);
+  return outputs;
+}
+
+void mergeInto(PcdRecords& all, PcdRecords part, const PcdScan& scan, ScanFrame frame) {
+  if (frame == ScanFrame::Sensor) moveToMap(part, scan.pose);
+  part.width = 0;
+  part.viewpoint = Pose();
+  if (all.fields.empty()) {
+    all = std::move(part);
+    return;
+  }
+  try {
+    append(all, part);
+  } catch (const std::invalid_argument&) {
+    throw FileError(scan.path, "other fields than the scans before: they cannot be merged into one cloud");
+  }
+}
+
+Json jsonOf(const RemovalScore& score) {
+  return {{"static_points", score.still},    {"static_kept", score.still_kept},
+          {"dynamic_points", score.moving},  {"dynamic_removed", score.moving_removed},
+          {"SA", score.staticAccuracy()},    {"DA", score.dynamicAccuracy()},
+          {"AA", score.associatedAccuracy()}};
+}
+
+void print(const RemovalScore& score) {
+  const auto percent = [](double share) { return std::round(share * 1e5) / 1e3; };
+  std::cout << "SA " << percent(score.staticAccuracy()) << " % of " << score.still << " static points kept, DA "
+            << percent(score.dynamicAccuracy()) << " % of " << score.moving << " dynamic points removed, AA "
+            << percent(score.associatedAccuracy()) << " %\n";
+}
+
+/// What became of the points.
+struct Cleaned {
+  std::size_t points = 0, removed = 0;
+  RemovalScore score;
+};
+
+/// Refuses scans that cannot be scored or written, before any work is done.
+void checkScans(const CleanCommand& command, const PcdScans& scans) {
+  if (!command.labels.empty())
+    for (std::size_t i = 0; i < scans.size(); ++i)
+      if (!scans.reader(i).header().find(command.labels))
+        throw FileError(scans.files()[i].path, "no field '" + command.labels + "' to score against");
+  if (command.writes())
+    for (std::size_t i = 0; i < scans.size(); ++i) checkWritable(scans.reader(i));
+}
+
+/// Writes every scan without its moving points. `outputs`: as long as the scans, or empty.
+Cleaned writeCleaned(const CleanCommand& command, const PcdScans& scans, const MovingPoints& moving,
+                     const std::vector<std::filesystem::path>& outputs) {
+  Cleaned cleaned;
+  PcdRecords merged, removed;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    const PcdReader reader = scans.reader(i);
+    std::vector<bool> is_moving = moving.inScan(i), is_still = is_moving;
+    is_still.flip();
+    cleaned.points += is_moving.size();
+    cleaned.removed += static_cast<std::size_t>(std::count(is_moving.begin(), is_moving.end(), true));
+    if (!command.labels.empty()) {
+      const std::vector<double> labels = reader.column(command.labels);
+      for (std::size_t p = 0; p < labels.size(); ++p) cleaned.score.add(labels[p] != 0.0, is_moving[p]);
+    }
+    if (!command.writes()) continue;
+    PcdRecords records = readRecords(reader);
+    if (!poseFault(records.viewpoint).empty()) records.viewpoint = scans.files()[i].pose;  // that of --poses
+    const auto part = [&](const std::vector<bool>& keep, bool organised) {
+      PcdRecords kept = records;
+      if (!organised) kept.width = 0;
+      keepOnly(kept, keep);
+      return kept;
+    };
+    if (!outputs.empty()) writePcd(outputs[i], part(is_still, true));
+    if (!command.merged.empty()) mergeInto(merged, part(is_still, false), scans.files()[i], scans.frame());
+    if (!command.removed.empty()) mergeInto(removed, part(is_moving, false), scans.files()[i], scans.frame());
+  }
+  if (!command.merged.empty()) writePcd(command.merged, merged);
+  if (!command.removed.empty()) writePcd(command.removed, removed);
+  return cleaned;
+}
+
+void run(CleanCommand command) {
+  if (!command.writes() && command.labels.empty())
+    throw UsageError("nothing to do: give -o DIR, --merged FILE, --removed FILE or --labels");
+  const double start = now();
+  ScanEvidenceOptions& evidence = command.options.evidence;
+  const AccumulateOptions input = accumulateOptions(command.input, command.options.resolution, evidence.threads);
+  evidence.max_range = input.max_range;
+  const auto files = std::make_shared<const PcdScans>(openScans(command.input));
+  const PcdScans& scans = *files;
+  checkScans(command, scans);
+  const std::vector<std::filesystem::path> outputs = checkedOutputs(command, scans);
+  ProgressBar bar;
+  const MovingPoints moving(files, command.options, [&](MovingPointStep, std::size_t done) {
+    bar.show({done, scans.size(), 0, 0});
+  });
+  const Cleaned cleaned = writeCleaned(command, scans, moving, outputs);
+
+  const double seconds = now() - start;
+  if (command.json) {
+    Json json = {
+        {"scans", scans.size()}, {"points", cleaned.points}, {"removed", cleaned.removed}, {"seconds", seconds}};
+    if (!command.labels.empty()) json["score"] = jsonOf(cleaned.score);
+    return printJson(json);
+  }
+  std::cout << scans.size() << (scans.size() == 1 ? " scan, " : " scans, ") << cleaned.points << " points, "
+            << cleaned.removed << " of them on moving objects, " << secondsText(seconds) << " s\n";
+  if (!command.labels.empty()) print(cleaned.score);
+}
+
+}  // namespace
+
+void addClean(CLI::App& app) {
+  auto options = std::make_shared<CleanCommand>();
+  Command command(app, "clean", kCleanHelp);
+  addScanPaths(command, options->input);
+  command.text("-o,--output", options->folder, "directory for the cleaned scans, named as they were");
+  command.text("--merged", options->merged, "write the static points as one cloud in the map frame (.pcd)");
+  command.text("--removed", options->removed, "write the moving points as one cloud in the map frame (.pcd)");
+  command.force(options->force, "replace existing outputs");
+  command.text("--labels", options->labels, "score against this field of the scans: 0 = static, else dynamic")
+      .valueMayBeMissing("label");
+  command.number("--resolution", options->options.resolution, 1e-3, 1e3, "side of the finest cells [m]");
+  command
+      .number("--no-return-is-free", options->options.evidence.no_return_is_free, 1e-3, 1e6,
+              "count directions without a return as free space up to this range [m]")
+      .rare();
+  addScanOptions(command, options->input);
+  command.threads(options->options.evidence.threads);
+  command.json(options->json);
+  command.onRun([options] { run(*options); });
+}
+
+}  // namespace gaussmap::app

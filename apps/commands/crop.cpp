@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// gaussmap crop MAP -o OUT --box|--polygon: a part of a map.
+#include "gaussmap/editing/crop.h"
+
+#include <limits>
+#include <memory>
+#include <stdexcept>
+
+#include "commands/commands.h"
+#include "commands/map_task.h"
+#include "common/command.h"
+
+namespace gaussmap::app {
+namespace {
+
+struct CropCommand : MapTaskOptions {
+  std::vector<double> box;      // x0 y0 x1 y1 or x0 y0 z0 x1 y1 z1 [m]
+  std::vector<double> polygon;  // x y x y ... [m]
+  bool outside = false;
+};
+
+const Help kCropHelp = {
+    "Cut a part out of a map", "gaussmap crop town.gmap -o square.gmap --polygon 0 0 40 5 38 52 -3 45",
+    R"(A Gaussian is inside if its mean is inside. What is inside stays unchanged, including exact moments, so that
+parts that do not overlap can be merged to the whole map again. A coarse cluster on the border keeps only what
+lies inside.)"};
+
+Box<3> boxOf(const std::vector<double>& n) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  if (n.size() != 4 && n.size() != 6)
+    throw UsageError("--box: takes x0 y0 x1 y1 or x0 y0 z0 x1 y1 z1, not " + std::to_string(n.size()) + " numbers");
+  Box<3> box =
+      n.size() == 4 ? Box<3>{{n[0], n[1], -kFar}, {n[2], n[3], kFar}} : Box<3>{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+  if (!(box.low.array() < box.high.array()).all())
+    throw UsageError("--box: takes the low corner first, and is not flat");
+  return box;
+}
+
+Polygon polygonOf(const std::vector<double>& n) {
+  if (n.size() % 2 != 0 || n.size() < 6)
+    throw UsageError("--polygon: takes x y of three corners at least, not " + std::to_string(n.size()) + " numbers");
+  std::vector<Vector<2>> corners;
+  for (std::size_t i = 0; i < n.size(); i += 2) corners.emplace_back(n[i], n[i + 1]);
+  return Polygon(std::move(corners));
+}
+
+std::function<bool(const Vector<3>&)> region(const CropCommand& command) {
+  if (!command.box.empty())
+    return [box = boxOf(command.box), outside = command.outside](const Vector<3>& p) {
+      return isInBox<3>(box, p) != outside;
+    };
+  return [polygon = polygonOf(command.polygon), outside = command.outside](const Vector<3>& p) {
+    return polygon.contains(p.x(), p.y()) != outside;
+  };
+}
+
+void run(const CropCommand& command) {
+  MapTask task(command);
+  if (command.box.empty() == command.polygon.empty()) throw UsageError("crop needs one of --box and --polygon");
+  const auto isInside = region(command);
+  const GaussianMap<3> whole = task.load();
+  const GaussianMap<3> map = crop<3>(whole, isInside);
+  if (map.empty()) throw std::runtime_error(command.map + ": nothing of it lies in this region");
+  Json step = {{"outside", command.outside}};
+  step[command.box.empty() ? "polygon" : "box"] = command.box.empty() ? command.polygon : command.box;
+  task.addStep("crop", step);
+  task.save(map);
+  task.report(map, whole);
+}
+
+}  // namespace
+
+void addCrop(CLI::App& app) {
+  auto options = std::make_shared<CropCommand>();
+  Command command(app, "crop", kCropHelp);
+  addMapToMap(command, *options);
+  command.numbers("--box", options->box, 4, 6, -1e12, 1e12,
+                  "x0 y0 x1 y1, or x0 y0 z0 x1 y1 z1 [m]: low corner <= mean < high corner");
+  command.numbers("--polygon", options->polygon, 6, 1000000, -1e12, 1e12,
+                  "x y of its corners, in order [m], any height");
+  command.flag("--outside", options->outside, "keep what lies outside instead");
+  command.json(options->json);
+  command.onRun([options] { run(*options); });
+}
+
+}  // namespace gaussmap::app

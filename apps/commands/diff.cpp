@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// gaussmap diff A B: what is new, gone, changed in B.
+#include <cstdio>
+#include <memory>
+
+#include "commands/commands.h"
+#include "common/command.h"
+#include "common/json.h"
+#include "common/report.h"
+#include "gaussmap/editing/diff_maps.h"
+#include "gaussmap/io/pcd/map_pcd.h"
+#include "io/export/diff_pcd.h"
+
+namespace gaussmap::app {
+namespace {
+
+struct DiffCommand {
+  std::string first, second;
+  std::string output;
+  bool force = false, json = false;
+  DiffOptions diff;
+};
+
+const Help kDiffHelp = {
+    "Compare two maps of the same place: what is new, gone or changed",
+    "gaussmap diff monday.gmap tuesday.gmap -o changes.pcd --level 0.001",
+    R"(The output holds every Gaussian of the second map, and those of the first map that are gone, with the fields
+x y z covariance[6] weight p_value label. Labels: 0 the same, or too few points to decide; 1 new; 2 gone; 3 changed.
+What the sensors of the second map never observed counts as gone too. At refined scales, clusters can differ because
+the same surface was divided in another way: compare the finest scale.)"};
+
+void run(const DiffCommand& options) {
+  if (!options.output.empty()) {
+    requireExtension(options.output, ".pcd");
+    checkOutput({options.output, options.force}, {options.first, options.second});
+  }
+  const double start = now();
+  const GaussianMap<3> first = loadAnyMap(options.first), second = loadAnyMap(options.second);
+  const int s = options.diff.scale;
+  checkScale("--scale", s, first.scales(), options.first);
+  checkScale("--scale", s, second.scales(), options.second);
+  const MapDiff diff = diffMaps<3>(first, second, options.diff);
+  if (!options.output.empty()) detail::writeDiffPcd(options.output, first, second, diff, s);
+  const std::size_t none = diff.count(Change::None), fresh = diff.count(Change::New), gone = diff.count(Change::Gone),
+                    changed = diff.count(Change::Changed);
+  if (options.json) {
+    Json result = {{"first", options.first},
+                   {"second", options.second},
+                   {"scale", s},
+                   {"level", options.diff.level},
+                   {"gaussians", {first.gaussianCount(s), second.gaussianCount(s)}},
+                   {"same", none},
+                   {"new", fresh},
+                   {"gone", gone},
+                   {"changed", changed},
+                   {"seconds", now() - start}};
+    if (!options.output.empty()) result["output"] = options.output;
+    printJson(result);
+    return;
+  }
+  std::printf("%s -> %s, scale %d (%g m), level %g: %zu new, %zu gone, %zu changed, %zu the same\n",
+              options.first.c_str(), options.second.c_str(), s, first.grid().side(s), options.diff.level, fresh, gone,
+              changed, none);
+}
+
+}  // namespace
+
+void addDiff(CLI::App& app) {
+  auto options = std::make_shared<DiffCommand>();
+  Command command(app, "diff", kDiffHelp);
+  command.text("first", options->first, "map (.gmap, or PCD of Gaussians)").required();
+  command.text("second", options->second, "the later one, in the same frame and cells").required();
+  command.text("-o,--output", options->output, "labelled Gaussians to write (.pcd)");
+  command.force(options->force);
+  command.scale(options->diff.scale, "which scale, 0 = finest");
+  command.number("--level", options->diff.level, 1e-12, 0.5,
+                 "significance level: a change is reported if its p-value is at most this");
+  command
+      .number(
+          "--points", options->diff.points, 1.0, 1e9,
+          "how many points of one object count as independent at most; more find smaller movements, but also errors "
+          "of the poses")
+      .rare();
+  command.threads(options->diff.threads);
+  command.json(options->json);
+  command.onRun([options] { run(*options); });
+}
+
+}  // namespace gaussmap::app

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// gaussmap finish MAP -o OUT: a small map that accepts no more scans.
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+
+#include "commands/commands.h"
+#include "commands/map_task.h"
+#include "common/command.h"
+#include "common/report.h"
+
+namespace gaussmap::app {
+namespace {
+
+struct FinishCommand : MapTaskOptions {
+  int finest_scale = 0;
+  int compression = 15;  // zstd level: written once, read often
+};
+
+const Help kFinishHelp = {"Write a small, final map that accepts no more scans",
+                          "gaussmap finish street.gmap -o robot.gmap",
+                          R"(Drops the moments, which only more scans need, and rounds the rest:
+  - means by at most 1/16 standard deviation along each axis (the other coordinates fixed),
+  - the standard deviation in every direction by at most 5 %,
+  - weights and log-odds by at most 1/32.
+Covariances stay positive definite. A final map can no longer be merged exactly: keep the original.)"};
+
+void run(const FinishCommand& command) {
+  MapTask task(command);
+  GaussianMap<3> map = task.load();
+  if (task.metadata.count(kFinalEntry) > 0)
+    throw std::runtime_error(command.map + ": is final already, finish the map that it was made from");
+  checkScale("--finest-scale", command.finest_scale, map.scales());
+  map = finish<3>(map, command.finest_scale);
+  Json step = historyStep("finish");
+  if (command.finest_scale > 0) {
+    step["finest_scale"] = command.finest_scale;
+    task.metadata.erase("error_curves");  // their finest scale is no longer in the map
+  }
+  addHistory(task.metadata, step);
+  SaveOptions saving;
+  saving.compression = command.compression;
+  saving.precision = Precision::Finished;
+  task.save(map, saving);
+
+  const std::uintmax_t bytes = task.bytes(), before = task.bytesBefore();
+  std::size_t gaussians = 0;
+  for (int s = 0; s < map.scales(); ++s) gaussians += map.gaussianCount(s);
+  const double per_gaussian = gaussians > 0 ? static_cast<double>(bytes) / static_cast<double>(gaussians) : 0.0;
+  const std::string error = loadMetadata(command.output.path).at(kFinalEntry);
+  if (command.json) {
+    MapReport report;
+    report.scales = scalesOf(map);
+    report.last = {{"bytes_before", before}, {"bytes_per_gaussian", per_gaussian}, {"error", error}};
+    return task.report(report);
+  }
+  std::printf("%s: %zu Gaussians, %s of %s, %.1f bytes a Gaussian; %s\n", command.output.path.c_str(), gaussians,
+              humanBytes(bytes).c_str(), humanBytes(before).c_str(), per_gaussian, error.c_str());
+}
+
+}  // namespace
+
+void addFinish(CLI::App& app) {
+  auto options = std::make_shared<FinishCommand>();
+  Command command(app, "finish", kFinishHelp);
+  addMapToMap(command, *options);
+  command.number("--finest-scale", options->finest_scale, 0, 63, "leave out finer scales");
+  command.number("--compression", options->compression, 1, 19, "zstd level; higher: smaller, slower to write");
+  addRunOptions(command, *options);
+  command.onRun([options] { run(*options); });
+}
+
+}  // namespace gaussmap::app

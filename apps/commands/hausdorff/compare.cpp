@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdio>
+#include <iostream>
+
+#include "commands/hausdorff/hausdorff.h"
+#include "evaluation/error_cloud.h"
+#include "gaussmap/io/pcd/map_pcd.h"
+#include "gaussmap/io/ply/ply.h"
+
+namespace gaussmap::app {
+using namespace detail;
+
+namespace {
+
+Json jsonOf(const DistanceSummary& summary) {
+  if (summary.count == 0) return nullptr;
+  return {{"max", summary.max},   {"q99", summary.q99}, {"q95", summary.q95},
+          {"mean", summary.mean}, {"rms", summary.rms}, {"count", summary.count}};
+}
+
+Json jsonOf(const HausdorffResult& result) {
+  return {{"forward", jsonOf(result.forward)},
+          {"backward", jsonOf(result.backward)},
+          {"hausdorff", result.forward.count && result.backward.count ? Json(result.hausdorff()) : Json(nullptr)}};
+}
+
+void printRow(const char* scale, const char* samples, const char* direction, const DistanceSummary& s) {
+  if (s.count > 0)
+    std::printf("%-6s %-9s %-10s %10.4g %10.4g %10.4g %10.4g %10.4g %10zu\n", scale, samples, direction, s.max, s.q99,
+                s.q95, s.mean, s.rms, s.count);
+}
+
+void printRows(const std::string& scale, const char* samples, const char* from, const char* to,
+               const HausdorffResult& result) {
+  printRow(scale.c_str(), samples, (std::string(from) + "->" + to).c_str(), result.forward);
+  printRow(scale.c_str(), samples, (std::string(to) + "->" + from).c_str(), result.backward);
+}
+
+void printHead() {
+  std::printf("%-6s %-9s %-10s %10s %10s %10s %10s %10s %10s\n", "scale", "samples", "direction", "max", "99%", "95%",
+              "mean", "rms", "points");
+}
+
+std::vector<Vector<3>> readSubject(const HausdorffCommand& command) {
+  ScanInput cloud = command.reference;  // for the frame and the range
+  cloud.paths = {command.subject};
+  cloud.poses.clear();
+  return readPoints(cloud, command.samples.threads);
+}
+
+Json writeErrors(const HausdorffCommand& command, const std::vector<Vector<3>>& reference,
+                 const PointDistances& distances) {
+  const bool forward = command.direction == "forward";
+  const std::vector<Vector<3>>& points = forward ? distances.subject : reference;
+  writeErrorCloud(command.errors.path, points, forward ? distances.forward : distances.backward);
+  if (!command.json) std::cout << command.errors.path << ": " << points.size() << " points\n";
+  return {{"file", command.errors.path}, {"direction", command.direction}, {"points", points.size()}};
+}
+
+Reference readMesh(const HausdorffCommand& command) {
+  return Reference(readPly(command.onlyReference()), command.samples.samples, command.samples.seed);
+}
+
+}  // namespace
+
+void compareMap(const HausdorffCommand& command, ReferenceKind kind) {
+  std::optional<Reference> reference;
+  std::optional<GaussianMap<3>> other;
+  if (kind == ReferenceKind::Map)
+    other = loadAnyMap(command.onlyReference());
+  else if (kind == ReferenceKind::Mesh)
+    reference = readMesh(command);
+  else
+    reference = Reference(readPoints(command.reference, command.samples.threads));
+  const GaussianMap<3> map = loadAnyMap(command.subject);
+  std::vector<const GaussianMap<3>*> maps = {&map};
+  if (other) maps.push_back(&*other);
+  const std::vector<Level> levels = chosenLevels(command, maps);
+  if (!command.errors.path.empty() && levels.size() > 1)
+    throw UsageError("--write-errors writes one cloud: choose a --scale, or --leaves");
+
+  Json all = Json::array(), written;
+  if (!command.json) printHead();
+  for (const Level& level : levels) {
+    const SampleOptions& samples = command.samples;
+    if (other) reference = Reference(level ? sampleMap(*other, *level, samples) : sampleLeaves(*other, samples));
+    PointDistances distances;
+    const MapHausdorff result = level ? reference->compare(map, *level, samples, &distances)
+                                      : reference->compareLeaves(map, samples, &distances);
+    all.push_back({{"scale", jsonOf(level)},
+                   {"gaussians", result.gaussians},
+                   {"samples", result.samples},
+                   {"unplaced", result.unplaced},
+                   {"all", jsonOf(result.all)},
+                   {"within_two_sigma", jsonOf(result.within_two_sigma)}});
+    if (!command.json) {
+      printRows(textOf(level), "all", "map", "ref", result.all);
+      printRows(textOf(level), "2 sigma", "map", "ref", result.within_two_sigma);
+    }
+    if (!command.errors.path.empty()) written = writeErrors(command, reference->points(), distances);
+  }
+  if (!command.json) return;
+  Json json = {{"map", command.subject}, {"scales", all}};
+  if (!written.is_null()) json["errors"] = written;
+  printJson(json);
+}
+
+void compareCloud(const HausdorffCommand& command, ReferenceKind kind) {
+  const int threads = command.samples.threads;
+  PointDistances distances, *const wanted = command.errors.path.empty() ? nullptr : &distances;
+  HausdorffResult result;
+  std::vector<Vector<3>> points;
+  if (kind == ReferenceKind::Cloud) {
+    points = readPoints(command.reference, threads);
+    result = hausdorff(readSubject(command), points, threads, wanted);
+  } else {
+    const Reference mesh = readMesh(command);
+    points = mesh.points();
+    result = mesh.compare(readSubject(command), threads, wanted);
+  }
+  if (!command.json) {
+    printHead();
+    printRows("-", "points", "cloud", "ref", result);
+  }
+  Json json = {{"cloud", command.subject}, {"all", jsonOf(result)}};
+  if (wanted != nullptr) json["errors"] = writeErrors(command, points, distances);
+  if (command.json) printJson(json);
+}
+
+void compareMaxima(const HausdorffCommand& command) {
+  const std::vector<Vector<3>> reference = readPoints(command.reference, command.samples.threads);
+  const HausdorffMaxima maxima = hausdorffMaxima(readSubject(command), reference, command.samples.threads);
+  if (command.json)
+    return printJson({{"cloud", command.subject},
+                      {"all",
+                       {{"forward", {{"max", maxima.forward}}},
+                        {"backward", {{"max", maxima.backward}}},
+                        {"hausdorff", maxima.hausdorff()}}}});
+  std::printf("%-10s %10s\n%-10s %10.4g\n%-10s %10.4g\n", "direction", "max", "cloud->ref", maxima.forward,
+              "ref->cloud", maxima.backward);
+}
+
+}  // namespace gaussmap::app

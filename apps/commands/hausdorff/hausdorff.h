@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "commands/scan_input.h"
+#include "common/json.h"
+#include "common/usage.h"
+#include "gaussmap/evaluation/hausdorff.h"
+#include "gaussmap/evaluation/held_out.h"
+
+namespace gaussmap::app {
+
+enum class ReferenceKind { Cloud, Mesh, Map };
+
+struct HausdorffCommand {
+  std::string subject;
+  ScanInput reference;
+  std::optional<int> scale;
+  bool leaves = false;
+  SampleOptions samples;
+  bool max_only = false;
+  bool held_out = false;
+  HeldOutOptions scoring;
+  Output errors;
+  std::string direction = "forward";
+  bool json = false;
+
+  std::string onlyReference() const { return reference.paths.size() == 1 ? reference.paths.front() : std::string(); }
+};
+
+// Four things that the command can do; each prints its result.
+void compareMap(const HausdorffCommand& command, ReferenceKind reference);
+void compareCloud(const HausdorffCommand& command, ReferenceKind reference);
+void compareMaxima(const HausdorffCommand& command);
+void scoreMap(const HausdorffCommand& command);
+
+/// A scale; nullopt: all leaves of the map.
+using Level = std::optional<int>;
+std::string textOf(const Level& level);
+Json jsonOf(const Level& level);
+/// What is compared of some maps: what the user chose, else every scale that all of them have, preceded by the leaves
+/// if a map is compressed. Throws UsageError if a map does not have the scale.
+std::vector<Level> chosenLevels(const HausdorffCommand& command, const std::vector<const GaussianMap<3>*>& maps);
+
+}  // namespace gaussmap::app

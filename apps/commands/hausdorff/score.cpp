@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdio>
+
+#include "commands/hausdorff/hausdorff.h"
+#include "gaussmap/io/pcd/map_pcd.h"
+#include "gaussmap/map/queries.h"
+
+namespace gaussmap::app {
+
+void scoreMap(const HausdorffCommand& command) {
+  const std::vector<Vector<3>> points = readPoints(command.reference, command.samples.threads);
+  const GaussianMap<3> map = loadAnyMap(command.subject);
+  HeldOutOptions scoring = command.scoring;
+  scoring.threads = command.samples.threads;
+  Json all = Json::array();
+  if (!command.json)
+    std::printf("%-6s %10s %10s %10s %10s %10s %10s %10s\n", "scale", "gaussians", "mean", "median", "floor", "no cell",
+                "nowhere", "points");
+  for (const Level& level : chosenLevels(command, {&map})) {
+    const HeldOutResult result =
+        level ? heldOutLogLikelihood<3>(map, *level, points, scoring) : heldOutLogLikelihood<3>(map, points, scoring);
+    const std::size_t gaussians = level ? map.gaussianCount(*level) : leaves<3>(map).size();
+    const double share = 1.0 / static_cast<double>(result.count);
+    const double in_no_cell = share * static_cast<double>(result.in_no_cell);
+    const double nowhere = share * static_cast<double>(result.nowhere);
+    all.push_back({{"scale", jsonOf(level)},
+                   {"gaussians", gaussians},
+                   {"mean", result.mean},
+                   {"median", result.median},
+                   {"floor", result.floor},
+                   {"volume", result.volume},
+                   {"in_no_cell", in_no_cell},
+                   {"nowhere", nowhere},
+                   {"points", result.count}});
+    if (!command.json)
+      std::printf("%-6s %10zu %10.4f %10.4f %10.4f %9.3f%% %9.3f%% %10zu\n", textOf(level).c_str(), gaussians,
+                  result.mean, result.median, result.floor, 100.0 * in_no_cell, 100.0 * nowhere, result.count);
+  }
+  if (command.json) printJson({{"map", command.subject}, {"background", scoring.background}, {"scales", all}});
+}
+
+}  // namespace gaussmap::app

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// gaussmap info MAP: what is in a map file.
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+
+#include "commands/commands.h"
+#include "common/command.h"
+#include "common/json.h"
+#include "common/report.h"
+#include "drawing/plot.h"
+#include "gaussmap/io/pcd/map_pcd.h"
+#include "gaussmap/map/queries.h"
+
+namespace gaussmap::app {
+namespace {
+
+struct InfoCommand {
+  std::string map;
+  Output plot;
+  bool json = false;
+};
+
+const Help kInfoHelp = {
+    "Print scales, cells, Gaussians, extent and size of a map", "gaussmap info street.gmap --json",
+    R"(bytes/m^2: compressed bytes per square metre of occupied cells, where a cell counts as its side squared.)"};
+
+/// A map and what its file says about it.
+struct MapInfo {
+  GaussianMap<3> map;
+  MapMetadata metadata;
+  std::optional<Box<3>> extent;
+  std::vector<ErrorCurve> curves;
+  std::uintmax_t bytes = 0;
+  bool has_tile_sizes = false;
+  Json scales;
+};
+
+Json vectorOf(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+/// {"command": "refine", "budget": 3.0} -> "command refine, budget 3.0"
+std::string sentenceOf(const Json& step) {
+  if (step.is_string()) return step.get<std::string>();
+  if (!step.is_object()) return step.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string sentence;
+  for (const auto& [name, value] : step.items())
+    sentence += (sentence.empty() ? "" : ", ") + name + " " + sentenceOf(value);
+  return sentence;
+}
+
+/// Whether more scans can be added, and if not, why.
+std::string stateOf(const GaussianMap<3>& map, const MapMetadata& metadata) {
+  const auto final_error = metadata.find(kFinalEntry);
+  if (final_error != metadata.end()) return "final (takes no more scans): " + final_error->second;
+  if (map.isCompressed()) return "compressed: detail only where it is needed (takes no more scans)";
+  const std::string occupancy = map.hasOccupancy() ? ", with occupancy" : "";
+  return (map.canGrow() ? "exact moments at the finest scale (takes more scans)" : "Gaussians only (final)") +
+         occupancy;
+}
+
+/// Adds to each scale how much of it are leaves.
+void addLeaves(const GaussianMap<3>& map, Json& scales) {
+  const double all = map.weight(map.scales() - 1);
+  for (int s = 0; s < map.scales(); ++s) {
+    const LeafCounts counts = leafCounts<3>(map, s);
+    Json& scale = scales[static_cast<std::size_t>(s)];
+    scale["leaf_cells"] = counts.cells;
+    scale["leaf_gaussians"] = counts.gaussians;
+    scale["leaf_share"] = all > 0.0 ? counts.weight / all : 0.0;
+  }
+}
+
+/// Adds to each scale the bytes of its tiles.
+void addBytes(const GaussianMap<3>& map, const MapFileSize& size, Json& scales) {
+  for (int s = 0; s < map.scales(); ++s) {
+    const auto index = static_cast<std::size_t>(s);
+    const std::uintmax_t bytes = index < size.scale_tiles.size() ? size.scale_tiles[index] : 0;
+    const double area = static_cast<double>(map.cellCount(s)) * map.grid().side(s) * map.grid().side(s);
+    const bool is_empty = map.cellCount(s) == 0;
+    scales[index]["bytes"] = bytes;
+    scales[index]["bytes_per_gaussian"] = is_empty ? 0.0 : double(bytes) / double(map.gaussianCount(s));
+    scales[index]["bytes_per_square_metre"] = is_empty ? 0.0 : double(bytes) / area;
+  }
+}
+
+bool isCurve(const Json& curve) {
+  if (!curve.is_object() || !curve.value("scale", Json()).is_number_integer()) return false;
+  const Json points = curve.value("points", Json());
+  return points.is_array() && !points.empty() && std::all_of(points.begin(), points.end(), [](const Json& point) {
+           return point.is_object() && point.value("gaussians", Json()).is_number_unsigned() &&
+                  point["gaussians"] > 0 && point.value("q95", Json()).is_number() &&
+                  point.value("mean", Json()).is_number();
+         });
+}
+
+/// The error curves of the refinement; empty if there are none, or if the entry is something else.
+std::vector<ErrorCurve> curvesOf(const MapMetadata& metadata) {
+  const Json json = jsonEntry(metadata, "error_curves");
+  std::vector<ErrorCurve> curves;
+  if (!json.is_array() || !std::all_of(json.begin(), json.end(), isCurve)) return curves;
+  for (const Json& one : json) {
+    ErrorCurve& curve = curves.emplace_back();
+    curve.scale = one["scale"].get<int>();
+    for (const Json& point : one["points"])
+      curve.points.push_back({point["gaussians"].get<std::size_t>(), 0.0, point["q95"].get<double>(),
+                              point["mean"].get<double>()});  // q99 is not shown
+  }
+  return curves;
+}
+
+MapInfo readInfo(const std::string& path) {
+  MapInfo info;
+  info.map = loadAnyMap(path, &info.metadata);
+  info.curves = curvesOf(info.metadata);
+  info.extent = extentOf<3>(info.map);
+  info.scales = scalesOf(info.map);
+  info.has_tile_sizes = isGmap(path);
+  if (info.has_tile_sizes) {
+    const MapFileSize size = mapFileSize(path);
+    addBytes(info.map, size, info.scales);
+    info.bytes = size.file;
+  } else {
+    info.bytes = std::filesystem::file_size(path);
+  }
+  addLeaves(info.map, info.scales);
+  return info;
+}
+
+Json jsonOf(const MapInfo& info, const std::string& path) {
+  const GaussianMap<3>& map = info.map;
+  Json json = {{"map", path},
+               {"resolution", map.options().resolution},
+               {"ratio", map.options().ratio},
+               {"noise", map.options().noise},
+               {"finest", map.canGrow() || !map.scale(0).moments.empty() ? "moments" : "gaussians"},
+               {"takes_scans", map.canGrow()},
+               {"final", info.metadata.count(kFinalEntry) > 0},
+               {"compressed", map.isCompressed()},
+               {"occupancy", map.hasOccupancy()},
+               {"scales", info.scales},
+               {"bytes", info.bytes}};
+  if (info.extent) json["extent"] = {{"low", vectorOf(info.extent->low)}, {"high", vectorOf(info.extent->high)}};
+  Json& free_text = json["metadata"] = Json::object();
+  for (const auto& [name, value] : info.metadata) {
+    const Json parsed = Json::parse(value, nullptr, false);
+    free_text[name] = parsed.is_discarded() ? Json(value) : parsed;
+  }
+  return json;
+}
+
+void printScales(const MapInfo& info) {
+  std::printf("\n%5s %10s %10s %10s %12s %12s %12s\n", "scale", "cell [m]", "cells", "Gaussians", "weight", "bytes",
+              "bytes/m^2");
+  for (const Json& scale : info.scales) {
+    std::printf("%5d %10g %10zu %10zu %12.0f", scale["scale"].get<int>(), scale["cell_side"].get<double>(),
+                scale["cells"].get<std::size_t>(), scale["gaussians"].get<std::size_t>(),
+                scale["weight"].get<double>());
+    if (info.has_tile_sizes)
+      std::printf(" %12s %12.3g", humanBytes(scale["bytes"].get<std::uintmax_t>()).c_str(),
+                  scale["bytes_per_square_metre"].get<double>());
+    std::printf("\n");
+  }
+  if (!info.map.isCompressed()) return;
+  for (const Json& scale : info.scales)
+    std::printf("finest at scale %d: %zu cells, %zu Gaussians, %.3g %% of the points\n", scale["scale"].get<int>(),
+                scale["leaf_cells"].get<std::size_t>(), scale["leaf_gaussians"].get<std::size_t>(),
+                100.0 * scale["leaf_share"].get<double>());
+}
+
+void print(const MapInfo& info, const std::string& path) {
+  std::printf("%s: %s, %s\n", path.c_str(), humanBytes(info.bytes).c_str(), stateOf(info.map, info.metadata).c_str());
+  std::printf("ratio %d, noise floor %g m", info.map.options().ratio, info.map.options().noise);
+  if (info.extent) {
+    const Vector<3>&low = info.extent->low, &high = info.extent->high;
+    std::printf(", extent [%.2f %.2f %.2f] .. [%.2f %.2f %.2f] m", low.x(), low.y(), low.z(), high.x(), high.y(),
+                high.z());
+  }
+  printScales(info);
+  for (const ErrorCurve& curve : info.curves) {
+    std::printf("error curve of scale %d, Gaussians: 95 %% / mean [m] ", curve.scale);
+    for (const ErrorPoint& point : curve.points)
+      std::printf("  %zu: %.3g / %.3g", point.gaussians, point.q95, point.mean);
+    std::printf("\n");
+  }
+  const Json steps = jsonEntry(info.metadata, "history");
+  if (!steps.is_array()) return;
+  for (const Json& step : steps) std::printf("history: %s\n", sentenceOf(step).c_str());
+}
+
+void run(const InfoCommand& command) {
+  if (!command.plot.path.empty()) checkOutput(command.plot, {command.map});
+  const MapInfo info = readInfo(command.map);
+  if (!command.plot.path.empty()) {
+    if (info.curves.empty())
+      throw std::runtime_error(command.map + ": has no error curves; gaussmap refine makes them");
+    plotCurves(info.curves, command.plot.path);
+  }
+  if (command.json)
+    printJson(jsonOf(info, command.map));
+  else
+    print(info, command.map);
+}
+
+}  // namespace
+
+void addInfo(CLI::App& app) {
+  auto options = std::make_shared<InfoCommand>();
+  Command command(app, "info", kInfoHelp);
+  command.map(options->map);
+  command.text("--plot", options->plot.path, "draw the error against the number of Gaussians (.svg)");
+  command.force(options->plot.force, "replace an existing plot");
+  command.json(options->json);
+  command.onRun([options] { run(*options); });
+}
+
+}  // namespace gaussmap::app

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// gaussmap pcd2map IN... -o OUT.gmap: builds a map from scans; or --update MAP: adds scans to a map.
+#include "commands/pcd2map/pcd2map.h"
+
+#include <memory>
+
+#include "commands/commands.h"
+#include "commands/pcd2map/scan_report.h"
+#include "common/command.h"
+#include "common/report.h"
+#include "gaussmap/io/scans/pcd_scans.h"
+
+namespace gaussmap::app {
+namespace {
+
+const Help kPcd2mapHelp = {
+    "Build a map from PCD scans", "gaussmap pcd2map scans/*.pcd -o street.gmap --resolution 0.2 --budget 3",
+    R"(The pose of each scan is the VIEWPOINT of its file, unless --poses gives another one or --frame map says that the
+points are already in the map frame. A file of poses has one line per scan: TUM (t x y z qx qy qz qw), KITTI
+(12 numbers), or the name of the scan in front.
+
+--update adds scans to a map file and writes only the tiles that change. The finest scale then equals that of a map
+of all scans. Coarse cells with new points are rebuilt within the budget of the whole scale: --budget, or the budget
+that the map was made with, or else as many Gaussians per cell as the scale has. Cells keep their occupancy, new
+cells count as occupied. The update is atomic: readers see either the old or the new file.
+
+--online processes one scan after the other, marks what the laser sees through as free, and deletes what has moved.)"};
+
+void run(const Pcd2mapOptions& options) {
+  try {
+    const Grid<3> grid(options.map);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(std::string("--") + error.what());
+  }
+  std::vector<std::filesystem::path> inputs = listScans({options.input.paths.begin(), options.input.paths.end()});
+  if (!options.input.poses.empty()) inputs.emplace_back(options.input.poses);
+  MapTask task({"", options.output, options.budget.refine.threads, options.json}, inputs);
+  checkBudget(options.budget);
+  checkOnline(options.online, options.budget, options.output, inputs);
+  checkMemory(options);
+
+  const PcdScans scans = openScans(options.input);
+  const AccumulateOptions reading =
+      accumulateOptions(options.input, options.map.resolution, options.budget.refine.threads);
+  const WrittenMap written = !options.max_memory.empty() ? buildWithinMemory(options, scans, reading)
+                             : options.online.on         ? buildOnline(options, scans, reading, task)
+                                                         : buildInMemory(options, scans, reading, task);
+  MapReport report;
+  std::vector<std::size_t> gaussians;
+  for (const Json& scale : written.scales) gaussians.push_back(scale["gaussians"].get<std::size_t>());
+  report.before = summaryOf(scans, written.counts) + ", ";
+  report.counts = perScale(gaussians);
+  report.scales = written.scales;
+  report.first = {{"scans", scans.size()}, {"points", countsJson(written.counts)}};
+  report.tell_time = true;
+  task.report(report);
+}
+
+void addOptions(Command& command, Pcd2mapOptions& options) {
+  addScanPaths(command, options.input);
+  command.text("-o,--output", options.output.path, "map file to write (.gmap)");
+  command.force(options.output.force);
+  command.text("--update", options.update, "map file to add the scans to (.gmap)");
+  command.number("--resolution", options.map.resolution, "side of the finest cells [m]");
+  command.number("--scales", options.map.scales, "number of scales");
+  command.number("--ratio", options.map.ratio, "side of the cells of the next scale, in cells of this one").rare();
+  command.number("--noise", options.map.noise, "noise floor of every Gaussian [m]; 0: resolution / 20").rare();
+  addBudgetOptions(command, options.budget);
+  addOnlineOptions(command, options.online);
+  addScanOptions(command, options.input);
+  command
+      .text(
+          "--max-memory", options.max_memory,
+          "build within this memory (suffix k, M or G), tile by tile through a temporary file beside the map; the map "
+          "is the same, without error curves")
+      .rare();
+  command
+      .flag("!--no-curves", options.budget.curves,
+            "do not measure the error curves of other budgets (gaussmap info); saves time")
+      .rare();
+  command.threads(options.budget.refine.threads).rare();
+  command.json(options.json);
+  command.excludes("--update", {"--output", "--force", "--resolution", "--scales", "--ratio", "--noise", "--online",
+                                "--max-gaussians", "--max-bytes", "--max-error", "--method", "--max-memory"});
+}
+
+}  // namespace
+
+void addPcd2map(CLI::App& app) {
+  auto options = std::make_shared<Pcd2mapOptions>();
+  Command command(app, "pcd2map", kPcd2mapHelp);
+  addOptions(command, *options);
+  command.onRun([command, options] {
+    const bool updates = command.isGiven("--update");
+    if (!updates && !command.isGiven("--output")) throw UsageError("--output is required (or --update MAP)");
+    if (!updates) return run(*options);
+    if (command.isGiven("--budget")) options->update_budget = options->budget.budget;
+    updateFromScans(*options);
+  });
+}
+
+}  // namespace gaussmap::app

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/pcd2map/online_options.h"
+
+#include <map>
+
+#include "common/command.h"
+
+namespace gaussmap::app {
+namespace {
+
+const std::map<std::string, LearningRate> kRates = {{"sample-mean", LearningRate::SampleMean},
+                                                    {"occupancy", LearningRate::Occupancy}};
+const std::map<std::string, OccupancySamples> kSamples = {{"mean", OccupancySamples::Mean},
+                                                          {"random", OccupancySamples::Random}};
+
+}  // namespace
+
+void addOnlineOptions(Command& command, OnlineInput& input) {
+  OnlineOptions& options = input.options;
+  const Option online =
+      command.flag("--online", input.on, "map scan by scan: occupancy from range images, deletes what has moved");
+  for (const Option& option : {
+           command.choiceOf("--learning-rate", options.learning_rate, kRates, "how far a point moves its cluster"),
+           command.number("--occupancy-every", options.occupancy_every, 1, 1000000,
+                          "scans between two updates of the occupancy"),
+           command.choiceOf("--occupancy-samples", options.samples, kSamples,
+                            "which points of a cluster are tested: its mean, or random samples"),
+           command.number("--look-back", options.look_back, 0, 100000,
+                          "earlier range images that new cells are tested with"),
+           command.number("--no-return-is-free", options.no_return_is_free, 1e-3, 1e6,
+                          "count directions without a return as free space up to this range [m]"),
+           command.list("--max-ranges", options.max_ranges, 1e-3, 1e9,
+                        "one per scale, finest first: cells farther away are not tested [m]"),
+           command.flag("--keep", input.keep, "delete nothing"),
+           command.number("--refine-every", options.refine_every, 0, 1000000,
+                          "scans between two refinements, 0 = never"),
+           command.number("--refine-cells", options.refine_cells, 0, 1000000000,
+                          "most clusters that one refinement adds to a scale, 0 = as many as the budget allows (in the "
+                          "paper: 4)"),
+           command.text("--stats", input.stats, "write what each scan changed and how long it took (.csv)"),
+           command.text("--removed", input.removed, "write the deleted clusters, with the evidence (.pcd)"),
+       })
+    option.needs(online).group("With --online");
+}
+
+void checkOnline(const OnlineInput& input, const BudgetInput& budget, const Output& map,
+                 const std::vector<std::filesystem::path>& inputs) {
+  if (!input.on) return;
+  if (!budget.max_gaussians.empty() || !budget.max_bytes.empty() || budget.max_error > 0.0)
+    throw UsageError("--online takes --budget only: refine the map afterwards for another limit");
+  if (budget.cost || budget.cells) throw UsageError("--online takes neither --cost nor --cells");
+  if (budget.refine.seed != RefineOptions().seed) throw UsageError("--online takes no --seed");
+  checkOutputs({input.stats, input.removed}, map.force, inputs, {map.path});
+}
+
+OnlineOptions onlineOptions(const OnlineInput& input, const MapOptions& map, const AccumulateOptions& reading,
+                            const BudgetInput& budget) {
+  OnlineOptions options = input.options;
+  options.map = map;
+  options.max_range = reading.max_range;
+  options.threads = budget.refine.threads;
+  options.budget = budget.budget;
+  options.method = budget.method == "insert" ? RefineMethod::Insert : RefineMethod::Agglomerate;
+  options.forget = !input.keep;
+  return options;
+}
+
+}  // namespace gaussmap::app

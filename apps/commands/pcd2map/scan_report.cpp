@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/pcd2map/scan_report.h"
+
+#include <sstream>
+
+#include "commands/scan_input.h"
+
+namespace gaussmap::app {
+
+void requirePoints(const PointCounts& counts, const Scans& scans) {
+  if (counts.accepted > 0) return;
+  throw std::runtime_error(nameOf(scans) + ": of " + std::to_string(counts.read) + " points none is usable: " +
+                           std::to_string(counts.non_finite) + " are not finite, " + std::to_string(counts.at_sensor) +
+                           " at range 0, " + std::to_string(counts.beyond_range) + " beyond --max-range");
+}
+
+Json countsJson(const PointCounts& counts) {
+  return {{"read", counts.read},
+          {"accepted", counts.accepted},
+          {"non_finite", counts.non_finite},
+          {"at_sensor", counts.at_sensor},
+          {"beyond_range", counts.beyond_range}};
+}
+
+Json historyOf(const Scans& scans, const PointCounts& counts) {
+  return historyStep("pcd2map", {{"scans", scans.size()}, {"points", countsJson(counts)}});
+}
+
+std::string summaryOf(const Scans& scans, const PointCounts& counts) {
+  std::ostringstream text;
+  text << scans.size() << (scans.size() == 1 ? " scan, " : " scans, ") << counts.accepted << " points";
+  if (counts.accepted < counts.read)
+    text << " (left out: " << counts.non_finite << " not finite, " << counts.at_sensor << " at range 0, "
+         << counts.beyond_range << " too far)";
+  return text.str();
+}
+
+}  // namespace gaussmap::app

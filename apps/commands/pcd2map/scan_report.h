@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/json.h"
+#include "gaussmap/mapping/accumulate_scans.h"
+
+namespace gaussmap::app {
+
+/// Throws unless some point is usable; the message says why points were dropped.
+void requirePoints(const PointCounts& counts, const Scans& scans);
+
+Json countsJson(const PointCounts& counts);
+
+/// The step of the history for a map from scans.
+Json historyOf(const Scans& scans, const PointCounts& counts);
+
+/// "20 scans, 2203027 points (left out: ...)".
+std::string summaryOf(const Scans& scans, const PointCounts& counts);
+
+}  // namespace gaussmap::app

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/pcd2map/pcd2map.h"
+#include "commands/pcd2map/scan_report.h"
+#include "common/progress_bar.h"
+#include "gaussmap/io/gmap/build_map_file.h"
+#include "gaussmap/io/gmap/map_history.h"
+
+namespace gaussmap::app {
+
+void checkMemory(const Pcd2mapOptions& options) {
+  if (options.max_memory.empty()) return;
+  if (options.online.on || options.budget.method != "agglomerate" || !options.budget.max_gaussians.empty() ||
+      !options.budget.max_bytes.empty() || options.budget.max_error > 0.0)
+    throw UsageError(
+        "--max-memory: goes tile by tile, with --budget alone; --online, --method insert, --max-gaussians, --max-bytes "
+        "and --max-error look at the whole map (gaussmap refine does so afterwards)");
+  if (amountOf("--max-memory", options.max_memory, true) < kLeastBuildMemory)
+    throw UsageError("--max-memory " + options.max_memory + ": at least " + std::to_string(kLeastBuildMemory) +
+                     " bytes are needed");
+}
+
+WrittenMap buildWithinMemory(const Pcd2mapOptions& options, const Scans& scans, const AccumulateOptions& reading) {
+  BuildMapFileOptions building;
+  building.max_memory = amountOf("--max-memory", options.max_memory, true);
+  building.refine = options.budget.refine;
+  building.budget = PerCell{options.budget.budget};
+  building.refine.merge_cost = mergeCost(options.budget);
+  building.save = {options.output.force, SaveOptions().compression, options.budget.refine.threads};
+  const auto metadataOf = [&](const PointCounts& counts) {
+    requirePoints(counts, scans);
+    MapMetadata metadata;
+    // As refineWithin() writes it, so that the files are equal.
+    const std::string details = detailsOf(options.budget, historyOf(scans, counts));
+    recordStep(metadata, refineStep(building.budget, building.refine, details));
+    return metadata;
+  };
+  ProgressBar bar;
+  const BuiltMapFile built = buildMapFile(scans, reading, options.map, options.output.path, metadataOf, building,
+                                          [&](const AccumulateProgress& progress) { bar.show(progress); });
+  WrittenMap written{built.counts, Json::array()};
+  const Grid<3> grid(options.map);
+  for (int s = 0; s < grid.scales(); ++s)
+    written.scales.push_back({{"scale", s},
+                              {"cell_side", grid.side(s)},
+                              {"cells", built.cells[static_cast<std::size_t>(s)]},
+                              {"gaussians", built.gaussians[static_cast<std::size_t>(s)]},
+                              {"weight", static_cast<double>(built.counts.accepted)}});
+  return written;
+}
+
+}  // namespace gaussmap::app

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// gaussmap refine MAP -o OUT --budget X: another number of Gaussians at the coarse scales.
+#include <memory>
+#include <stdexcept>
+
+#include "commands/budget.h"
+#include "commands/commands.h"
+#include "commands/map_task.h"
+#include "common/command.h"
+
+namespace gaussmap::app {
+namespace {
+
+struct RefineCommand : MapTaskOptions {
+  BudgetInput budget;
+};
+
+const Help kRefineHelp = {
+    "Change the number of Gaussians at the coarse scales of a map",
+    "gaussmap refine street.gmap -o fine.gmap --budget 4",
+    R"(The coarse scales are computed again from the finest one. The result equals that of pcd2map with the same
+budget and seed. A compressed map cannot be refined, because its finest scale is incomplete.)"};
+
+void run(RefineCommand command) {
+  MapTask task(command);
+  checkBudget(command.budget);
+  GaussianMap<3> map = task.load();
+  if (map.isCompressed())
+    throw std::runtime_error(command.map +
+                             ": is compressed, its finest scale is incomplete: refine the map that it was made from");
+  command.budget.refine.threads = command.threads;
+  map = refineWithin(std::move(map), command.budget, task.metadata, historyStep("refine"));
+  task.save(map);
+  task.report(map);
+}
+
+}  // namespace
+
+void addRefine(CLI::App& app) {
+  auto options = std::make_shared<RefineCommand>();
+  Command command(app, "refine", kRefineHelp);
+  addMapToMap(command, *options);
+  addBudgetOptions(command, options->budget);
+  addRunOptions(command, *options);
+  command.onRun([options] { run(*options); });
+}
+
+}  // namespace gaussmap::app

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// gaussmap restore MAP REMOVED -o OUT: brings deleted clusters back.
+#include <memory>
+#include <stdexcept>
+
+#include "commands/commands.h"
+#include "commands/map_task.h"
+#include "common/command.h"
+#include "common/report.h"
+#include "editing/restore.h"
+#include "gaussmap/core/error.h"
+#include "io/pcd/removed_pcd.h"
+
+namespace gaussmap::app {
+using namespace detail;
+
+namespace {
+
+struct RestoreCommand : MapTaskOptions {
+  std::string removed;
+  std::vector<double> box;  // x0 y0 z0 x1 y1 z1 [m], empty: everywhere
+};
+
+const Help kRestoreHelp = {
+    "Bring back what pcd2map --online has deleted",
+    "gaussmap restore street.gmap removed.pcd -o whole.gmap --box -5 0 -1 5 20 3",
+    R"(The finest scale is exactly what it would be if the clusters had not been deleted. The coarse scales are
+computed again with as many Gaussians as they have. A cluster that is restored twice counts twice.)"};
+
+std::function<bool(const Vector<3>&)> region(const std::vector<double>& box) {
+  if (box.empty()) return [](const Vector<3>&) { return true; };
+  const Vector<3> low(box[0], box[1], box[2]), high(box[3], box[4], box[5]);
+  if ((low.array() > high.array()).any()) throw UsageError("--box: takes the low corner first: x0 y0 z0 x1 y1 z1");
+  return
+      [low, high](const Vector<3>& p) { return !(p.array() < low.array()).any() && !(p.array() > high.array()).any(); };
+}
+
+void run(const RestoreCommand& command) {
+  const auto isInside = region(command.box);
+  MapTask task(command, {command.map, command.removed});
+  const GaussianMap<3> old = task.load();
+  if (!old.canGrow())
+    throw FileError(command.map, std::string(old.isCompressed() ? "is compressed" : "holds Gaussians only") +
+                                     ": nothing can be brought back into it exactly");
+  const std::vector<RemovedCluster<3>> removed = readRemoved(command.removed);
+  RestoredMap restored;
+  try {
+    restored = restoreClusters(old, removed, isInside, command.threads);
+  } catch (const std::invalid_argument& error) {
+    throw FileError(command.removed, error.what());
+  }
+
+  const Json counts = {{"clusters", restored.clusters}, {"points", restored.points}};
+  Json step = counts;
+  if (!command.box.empty()) step["box"] = command.box;
+  task.addStep("restore", step);
+  task.save(restored.map);
+  MapReport report;
+  report.before = std::to_string(restored.clusters) + (restored.clusters == 1 ? " cluster" : " clusters") + " of " +
+                  std::to_string(restored.points) + " points brought back, ";
+  report.counts = perScale(restored.map);
+  report.scales = scalesOf(restored.map);
+  report.first = counts;
+  task.report(report);
+}
+
+}  // namespace
+
+void addRestore(CLI::App& app) {
+  auto options = std::make_shared<RestoreCommand>();
+  Command command(app, "restore", kRestoreHelp);
+  command.text("map", options->map, "map (.gmap)").required();
+  command.text("removed", options->removed, "deleted clusters, written by pcd2map --online --removed (.pcd)")
+      .required();
+  addMapOutput(command, *options);
+  command.numbers("--box", options->box, 6, -1e12, 1e12,
+                  "only clusters whose mean lies in this box: x0 y0 z0 x1 y1 z1 [m]");
+  addRunOptions(command, *options);
+  command.onRun([options] { run(*options); });
+}
+
+}  // namespace gaussmap::app

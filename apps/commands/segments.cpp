@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// gaussmap segments IN... -o OUT.{pcd,svg,geojson,csv}: a 2-D map of linked line segments.
+#include "commands/segments/segments.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "commands/commands.h"
+#include "commands/segments/segment_report.h"
+#include "common/command.h"
+#include "common/json.h"
+#include "common/report.h"
+#include "gaussmap/io/export/segment_files.h"
+#include "gaussmap/io/logs/carmen_log.h"
+
+namespace gaussmap::app {
+using namespace detail;
+
+namespace {
+
+const Help kSegmentsHelp = {
+    "Build a 2-D map of linked line segments from scans of a planar laser",
+    "gaussmap segments lab.log.gz -o lab.svg -o lab.pcd --every 2 --evaluate lab.log.gz",
+    R"(Reads the scans in their order and writes one map: the walls that were seen, with free space on their left side,
+linked into chains. A map that was written as .pcd can be the input again, to evaluate it or to write another format.)"};
+
+/// Throws UsageError for outputs that cannot be written, or would destroy one of the files that are read.
+void checkFiles(const SegmentsCommand& command, std::vector<std::filesystem::path> inputs) {
+  for (const std::string& file : {command.input.scans.poses, command.evaluate, command.walls})
+    if (!file.empty()) inputs.emplace_back(file);
+  std::vector<std::string> outputs = command.outputs;
+  outputs.push_back(command.stats);
+  checkOutputs(outputs, command.force, inputs);
+}
+
+/// Throws UsageError for options that a finished map has no use for.
+void checkFinished(const Command& given, const SegmentsCommand& command) {
+  std::string option = givenFitterOption(given);
+  if (!command.stats.empty()) option = "--stats";
+  if (command.evidence) option = "--evidence";
+  if (command.every > 1) option = "--every";
+  if (!option.empty())
+    throw UsageError(option + ": " + command.input.scans.paths[0] + " is a finished map of segments");
+}
+
+/// Reads a finished map, or fits one to scans.
+FittedSegments mapOf(const Command& given, const SegmentsCommand& command) {
+  const std::vector<std::string>& paths = command.input.scans.paths;
+  const bool is_pcd = paths.size() == 1 && !isCarmenLogName(paths[0]) && !std::filesystem::is_directory(paths[0]);
+  if (is_pcd && isSegmentPcd(paths[0])) {
+    checkFinished(given, command);
+    FittedSegments finished;
+    finished.map = readSegmentPcd(paths[0]);
+    return finished;
+  }
+  fitterOptions(command.fitter);  // its complaints come before the work of reading
+  makeUtility(command.fitter);
+  const LaserScans input = readLaserScans(command.input);
+  checkFiles(command, input.files);
+  return fitSegments(command, input);
+}
+
+void printMap(const SegmentsCommand& command, const FittedSegments& fitted) {
+  for (const std::string& output : command.outputs)
+    std::cout << output << (&output == &command.outputs.back() ? ": " : ", ");
+  std::cout << fitted.map.segments.size() << " segments in " << fitted.map.chains.size() << " chains, "
+            << formatted("%.1f m", fitted.map.totalLength());
+  if (fitted.scans > 0)
+    std::cout << "; " << fitted.scans << " scans, " << fitted.beams << " beams, "
+              << formatted("%.0f beams/s, ", static_cast<double>(fitted.beams) / std::max(fitted.seconds, 1e-9))
+              << humanBytes(fitted.memory);
+  std::cout << '\n';
+}
+
+Json mapJson(const SegmentsCommand& command, const FittedSegments& fitted) {
+  Json json = {{"output", command.outputs},
+               {"segments", fitted.map.segments.size()},
+               {"chains", fitted.map.chains.size()},
+               {"length", fitted.map.totalLength()}};
+  if (fitted.scans > 0)
+    json.update(Json{{"scans", fitted.scans},
+                     {"beams", fitted.beams},
+                     {"normal_variance", fitted.last.normal_variance},
+                     {"splits", fitted.splits},
+                     {"merges", fitted.merges},
+                     {"pruned", fitted.pruned},
+                     {"memory", fitted.memory},
+                     {"seconds", fitted.seconds}});
+  return json;
+}
+
+void run(const Command& given, const SegmentsCommand& command) {
+  if (command.outputs.empty() && command.stats.empty() && command.evaluate.empty() && command.walls.empty())
+    throw UsageError("nothing to do: give -o FILE, --stats FILE, --evaluate LOG or --walls FILE");
+  for (const std::string& output : command.outputs) checkSegmentsName(output);
+  checkFiles(command, {command.input.scans.paths.begin(), command.input.scans.paths.end()});
+  const FittedSegments fitted = mapOf(given, command);
+  std::optional<HoldOutScore> held_out;
+  LaserScans test;
+  if (!command.evaluate.empty()) {
+    test = testScans(command, fitted.left_out);
+    checkFiles(command, test.files);
+    held_out = scoreHoldOut(fitted.map, test.scans);
+  }
+  std::optional<WallScore> walls;
+  if (!command.walls.empty()) walls = scoreWalls(fitted.map, readSegmentPcd(command.walls).segments);
+
+  for (const std::string& output : command.outputs) writeSegments(output, fitted);
+  if (!command.stats.empty()) writeText(command.stats, fitted.statistics);
+  if (command.json) {
+    Json json = mapJson(command, fitted);
+    if (held_out) json["held_out"] = scoreJson(*held_out, test.scans.size());
+    if (walls) json["walls"] = scoreJson(*walls);
+    return printJson(json);
+  }
+  printMap(command, fitted);
+  if (held_out) printScore(*held_out, test.scans.size());
+  if (walls) printScore(*walls);
+}
+
+}  // namespace
+
+void addSegments(CLI::App& app) {
+  auto options = std::make_shared<SegmentsCommand>();
+  Command command(app, "segments", kSegmentsHelp);
+  addLaserOptions(command, options->input);
+  command.texts("-o,--output", options->outputs, "map to write: .pcd, .svg, .geojson or .csv; repeatable").onePerUse();
+  command.force(options->force, "replace existing outputs");
+  command.flag("--evidence", options->evidence, "draw the evidence of the segments into the .svg");
+  command.number("--every", options->every, 1, 1000000, "map every N-th scan only, beginning with the first");
+  command.text("--stats", options->stats, "write what each scan changed (.csv)");
+  command.text("--evaluate", options->evaluate,
+               "score the map on a log, scan or directory; of an input, on the scans that --every leaves out");
+  command.text("--walls", options->walls, "score the map against true walls (walls.pcd of simulate plan)");
+  addFitterOptions(command, options->fitter);
+  command.json(options->json);
+  command.onRun([command, options] { run(command, *options); });
+}
+
+}  // namespace gaussmap::app

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <filesystem>
+
+#include "commands/segments/segments.h"
+#include "common/usage.h"
+#include "gaussmap/io/export/segment_files.h"
+
+namespace gaussmap::app {
+
+void checkSegmentsName(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  if (extension != ".pcd" && extension != ".svg" && extension != ".geojson" && extension != ".csv")
+    throw UsageError("'" + path + "': the name must end in .pcd, .svg, .geojson or .csv");
+}
+
+void writeSegments(const std::string& path, const FittedSegments& fitted) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  if (extension == ".pcd") return writeSegmentPcd(path, fitted.map);
+  if (extension == ".geojson") return writeSegmentGeoJson(path, fitted.map);
+  if (extension == ".csv") return writeSegmentCsv(path, fitted.map);
+  drawSegments(fitted.map, {fitted.evidence, fitted.field}, path);
+}
+
+}  // namespace gaussmap::app

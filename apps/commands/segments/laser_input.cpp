@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/segments/laser_input.h"
+
+#include <algorithm>
+
+#include "common/command.h"
+#include "common/report.h"
+
+#include "gaussmap/io/logs/carmen_log.h"
+#include "gaussmap/segments/planar_scan.h"
+
+namespace gaussmap::app {
+namespace {
+
+constexpr std::size_t kMostWarnings = 5;  // about one log
+
+LaserScans readLogs(const std::vector<std::string>& paths) {
+  LaserScans all;
+  for (const std::string& path : paths) {
+    const CarmenLog log = readCarmenLog(path);
+    const std::size_t shown = std::min(log.faults.size(), kMostWarnings);
+    for (std::size_t i = 0; i < shown; ++i)
+      warn(path + ": line " + std::to_string(log.faults[i].line) + " is left out: " + log.faults[i].what);
+    const std::size_t more = log.faults.size() - shown + log.more_faults;
+    if (more > 0) warn(path + ": " + std::to_string(more) + " more lines are left out");
+    for (std::size_t i = 0; i < log.scans.size(); ++i) {
+      all.scans.push_back(log.scans[i]);
+      all.names.push_back(std::filesystem::path(path).filename().string() + ":" + std::to_string(i));
+    }
+    all.files.emplace_back(path);
+  }
+  return all;
+}
+
+LaserScans readPcds(const LaserInput& input) {
+  PlanarScanOptions options;
+  if (input.scans.max_range > 0.0) options.max_range = input.scans.max_range;
+  if (!input.slice.empty()) {
+    options.slice = true;
+    options.z_min = input.slice[0];
+    options.z_max = input.slice[1];
+    if (options.z_min > options.z_max) throw UsageError("--slice: the second height is below the first");
+  }
+  LaserScans all;
+  const PcdScans scans = openScans(input.scans);
+  all.scans = planarScans(scans, options);
+  for (const PcdScan& scan : scans.files()) {
+    all.names.push_back(scan.path.filename().string());
+    all.files.push_back(scan.path);
+  }
+  return all;
+}
+
+}  // namespace
+
+void addLaserOptions(Command& command, LaserInput& input) {
+  command
+      .texts("scans", input.scans.paths,
+             "CARMEN logs (.log, .log.gz), or PCD scans of a planar laser, or directories of them")
+      .required();
+  addScanOptions(command, input.scans);
+  command.numbers("--slice", input.slice, 2, -1e6, 1e6,
+                  "use the points of 3-D scans between two heights of the map [m]");
+  command.number("--position-noise", input.position_noise, 0.0, 100.0, "standard deviation of the poses' x and y [m]")
+      .rare();
+  command.number("--heading-noise", input.heading_noise, 0.0, 1.0, "standard deviation of the poses' heading [rad]")
+      .rare();
+}
+
+LaserScans readLaserScans(const LaserInput& input) {
+  const std::vector<std::string>& paths = input.scans.paths;
+  const auto logs =
+      std::count_if(paths.begin(), paths.end(), [](const std::string& path) { return isCarmenLogName(path); });
+  const bool are_logs = logs > 0;
+  if (are_logs && static_cast<std::size_t>(logs) < paths.size())
+    throw UsageError("logs and PCD scans cannot be mixed: make a map of one kind");
+  if (are_logs && (!input.slice.empty() || !input.scans.poses.empty() || input.scans.frame != "sensor"))
+    throw UsageError("--slice, --poses and --frame are for PCD scans: a log has planar scans with their poses");
+  LaserScans all = are_logs ? readLogs(paths) : readPcds(input);
+  for (LaserScan& scan : all.scans) {
+    if (are_logs && input.scans.max_range > 0.0) scan.max_range = std::min(scan.max_range, input.scans.max_range);
+    const double square = input.position_noise * input.position_noise;
+    scan.pose.covariance.diagonal() << square, square, input.heading_noise * input.heading_noise;
+  }
+  return all;
+}
+
+}  // namespace gaussmap::app

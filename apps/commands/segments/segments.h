@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "commands/segments/fitter_options.h"
+#include "commands/segments/laser_input.h"
+#include "drawing/segment_picture.h"
+#include "gaussmap/segments/segment_fitter.h"
+
+namespace gaussmap::app {
+
+struct SegmentsCommand {
+  LaserInput input;
+  FitterInput fitter;
+  std::vector<std::string> outputs;
+  std::string stats, evaluate, walls;
+  int every = 1;
+  bool force = false, evidence = false, json = false;
+};
+
+/// A map of segments, and how it was fitted.
+struct FittedSegments {
+  SegmentMap map;
+  std::vector<Vector<2>> evidence;
+  std::vector<LaserScan> left_out;  // by --every
+  std::size_t scans = 0, beams = 0, memory = 0;
+  double seconds = 0.0;  // of fitting
+  std::optional<SegmentPicture::Field> field;
+  std::string statistics;  // as CSV
+  SegmentStatistics last;
+  std::size_t splits = 0, merges = 0, pruned = 0;
+};
+
+/// Fits segments to every N-th scan. Throws FileError if no beam returned.
+FittedSegments fitSegments(const SegmentsCommand& command, const LaserScans& input);
+
+/// Scans to score on: of a log or directory of its own, or those of the inputs that --every left out. Throws UsageError
+/// if there are none.
+LaserScans testScans(const SegmentsCommand& command, const std::vector<LaserScan>& left_out);
+
+/// Throws UsageError if the extension of the file is not one of those that writeSegments() knows.
+void checkSegmentsName(const std::string& path);
+/// Writes the map, the format by the extension of the file.
+void writeSegments(const std::string& path, const FittedSegments& fitted);
+
+}  // namespace gaussmap::app

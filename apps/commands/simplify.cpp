@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// gaussmap simplify MAP -o OUT: fewer Gaussians, merged from the existing ones.
+#include "gaussmap/editing/simplify.h"
+
+#include <memory>
+
+#include "commands/budget.h"
+#include "commands/commands.h"
+#include "commands/map_task.h"
+#include "common/command.h"
+#include "common/report.h"
+#include "gaussmap/io/gmap/map_history.h"
+
+namespace gaussmap::app {
+namespace {
+
+struct SimplifyCommand : MapTaskOptions {
+  BudgetInput limit;
+  bool has_budget = false;
+};
+
+const Help kSimplifyHelp = {
+    "Merge Gaussians of a map until it is small enough",
+    "gaussmap simplify street.gmap -o small.gmap --max-gaussians 1=20000",
+    R"(Needs only the Gaussians of the map, so it also works on final and compressed maps. (refine computes the
+coarse scales again from the finest one.) Every cell keeps at least one Gaussian.)"};
+
+/// Completes `step` by the limit and adds it to the history.
+GaussianMap<3> simplified(const GaussianMap<3>& map, const SimplifyCommand& command, MapMetadata& metadata, Json step) {
+  const BudgetInput& limit = command.limit;
+  const SimplifyOptions options{mergeCost(limit), command.threads};
+  Budget budget = budgetOf(limit, map, 0);
+  recordStep(metadata, simplifyStep(budget, options, detailsOf(limit, std::move(step))));
+  measureFile(budget, metadata, options.threads);
+  RefineResult<3> result = simplify<3>(map, budget, options);
+  for (const NotReached& scale : result.not_reached)
+    warn("scale " + std::to_string(scale.scale) + " is farther away than --max-error as it came: 95 % are within " +
+         Json(scale.q95).dump() + " m; nothing of it was merged");
+  return std::move(result.map);
+}
+
+void run(const SimplifyCommand& command) {
+  MapTask task(command);
+  const BudgetInput& limit = command.limit;
+  if (!command.has_budget && limit.max_gaussians.empty() && limit.max_bytes.empty() && limit.max_error == 0.0)
+    throw UsageError("simplify needs one of --budget, --max-gaussians, --max-bytes and --max-error");
+  checkBudget(limit);
+  const GaussianMap<3> old = task.load();
+  task.metadata.erase("error_curves");  // of the scales as they were
+  const GaussianMap<3> map = simplified(old, command, task.metadata, historyStep("simplify"));
+  task.save(map);
+  task.report(map, old, {{"bytes_before", task.bytesBefore()}});
+}
+
+}  // namespace
+
+void addSimplify(CLI::App& app) {
+  auto options = std::make_shared<SimplifyCommand>();
+  Command command(app, "simplify", kSimplifyHelp);
+  addMapToMap(command, *options);
+  addLimitOptions(command, options->limit).hideDefault();
+  addCostOption(command, options->limit);
+  addRunOptions(command, *options);
+  command.onRun([options, command] {
+    options->has_budget = command.isGiven("--budget");
+    run(*options);
+  });
+}
+
+}  // namespace gaussmap::app

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// gaussmap tiles MAP -o DIR: PCD tiles with an index; gaussmap tiles DIR -o MAP: the way back.
+#include <cstdio>
+#include <memory>
+
+#include "commands/commands.h"
+#include "commands/map_task.h"
+#include "common/command.h"
+#include "gaussmap/io/export/map_tiles.h"
+#include "gaussmap/io/pcd/map_pcd.h"
+
+namespace gaussmap::app {
+namespace {
+
+struct TilesCommand : MapTaskOptions {
+  int size = TilesOptions().size;
+  int scale = 0;
+  bool all_scales = false;
+};
+
+const Help kTilesHelp = {
+    "Write a map as PCD tiles with an index, as Autoware loads them, or read such tiles",
+    "gaussmap tiles street.gmap -o tiles && gaussmap tiles tiles -o back.gmap",
+    R"(Writes tile_X_Y.pcd for every square of --size metres, and pointcloud_map_metadata.yaml with the lower corner of
+each tile: the layout of Autoware's dynamic map loading. x y z are the means of the finest scale, the other
+fields are those of gaussmap export.
+If the input is a directory of tiles, a map is made of it. From tiles of the finest scale alone, the map has one
+Gaussian per coarse cell (gaussmap refine adds more). Tiles hold no moments: the map accepts no more scans.)"};
+
+void toTiles(const TilesCommand& command) {
+  const GaussianMap<3> map = loadAnyMap(command.map);
+  checkScale("--scale", command.scale, map.scales());
+  TilesOptions to;
+  to.size = command.size;
+  to.scale = command.all_scales ? std::nullopt : std::optional<int>(command.scale);
+  const WrittenTiles written = saveTiles(map, command.output.path, to);
+  if (command.json)
+    printJson({{"directory", command.output.path}, {"tiles", written.tiles}, {"gaussians", written.gaussians}});
+  else
+    std::printf("%s: %zu tiles of %d m, %zu Gaussians\n", command.output.path.c_str(), written.tiles, command.size,
+                written.gaussians);
+}
+
+void fromTiles(const TilesCommand& command) {
+  MapTask task(command, {});
+  const GaussianMap<3> map = loadTiles(command.map);
+  task.addStep("tiles", {{"directory", command.map}});
+  task.save(map);
+  if (command.json)
+    printJson({{"map", command.output.path}, {"scales", scalesOf(map)}, {"bytes", task.bytes()}});
+  else
+    std::printf("%s: %zu cells of %g m, %d scales\n", command.output.path.c_str(), map.cellCount(0), map.grid().side(0),
+                map.scales());
+}
+
+}  // namespace
+
+void addTiles(CLI::App& app) {
+  auto options = std::make_shared<TilesCommand>();
+  Command command(app, "tiles", kTilesHelp);
+  command.text("map", options->map, "map (.gmap, or PCD of Gaussians), or a directory of tiles").required();
+  command.output(options->output, "directory, or map file (.gmap), to write");
+  command.number("--size", options->size, 1, 1000000, "side of a tile [m]");
+  const Option scale = command.scale(options->scale, "the scale that is written, 0 = finest");
+  command.flag("--all-scales", options->all_scales, "write all scales, so that the way back rebuilds nothing")
+      .excludes(scale);
+  command.json(options->json);
+  command.onRun([options] { std::filesystem::is_directory(options->map) ? fromTiles(*options) : toTiles(*options); });
+}
+
+}  // namespace gaussmap::app

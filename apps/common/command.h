@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/usage.h"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+// Options of commands. CLI11, which takes seconds to compile, is confined to the sources of this header and main.
+namespace gaussmap::app {
+
+/// What a command says about itself.
+struct Help {
+  std::string summary;  ///< one line, also in the list of commands
+  std::string example;  ///< one command line
+  std::string details;  ///< paragraphs that only --help-all shows
+};
+
+/// An option of a command.
+class Option {
+ public:
+  explicit Option(CLI::Option* option) : option_(option) {}
+  Option required() const;
+  Option rare() const;                          ///< only --help-all shows it
+  Option group(const std::string& name) const;  ///< the same, under a heading
+  Option needs(const Option& other) const;
+  Option excludes(const Option& other) const;
+  Option type(const std::string& name) const;  ///< what the help calls its value
+  Option hideDefault() const;
+  Option atLeast(int count) const;  ///< so many values
+  Option onePerUse() const;         ///< may be given several times, with one value each
+  Option valueMayBeMissing(const std::string& then) const;
+
+ private:
+  CLI::Option* option_;
+};
+
+/// A command of the program, to which options are added. Names without dashes are positional arguments. Variables must
+/// live as long as the program; their values are the defaults, which the help shows.
+class Command {
+ public:
+  Command(CLI::App& program, const std::string& name, const Help& help);
+  Command(CLI::App& program, const Help& help);  ///< the program itself, if it has no commands
+
+  Option flag(const std::string& name, bool& value, const std::string& help);
+  Option text(const std::string& name, std::string& value, const std::string& help);
+  Option texts(const std::string& name, std::vector<std::string>& values, const std::string& help);
+  /// T: int, std::size_t, double, or std::optional of one of them. Floating-point ranges refuse NaN.
+  template <typename T>
+  Option number(const std::string& name, T& value, const std::string& help);
+  template <typename T>
+  Option number(const std::string& name, T& value, double low, double high, const std::string& help);
+  /// `count` numbers, or `least` to `most`.
+  Option numbers(const std::string& name, std::vector<double>& values, int least, int most, double low, double high,
+                 const std::string& help);
+  Option numbers(const std::string& name, std::vector<double>& values, int count, double low, double high,
+                 const std::string& help) {
+    return numbers(name, values, count, count, low, high, help);
+  }
+  /// Numbers with commas between them.
+  Option list(const std::string& name, std::vector<double>& values, double low, double high, const std::string& help);
+
+  /// One of some words. T: std::string, or std::optional of it.
+  template <typename T>
+  Option choice(const std::string& name, T& value, const std::vector<std::string>& words, const std::string& help);
+  /// One of some values that have names.
+  template <typename T>
+  Option choiceOf(const std::string& name, T& value, const std::map<std::string, T>& named, const std::string& help) {
+    std::string now;
+    for (const auto& [word, one] : named)
+      if (one == value) now = word;
+    const auto set = [&value, named](const std::string& word) { value = named.at(word); };
+    return choice(name, wordsOf(named), now, set, help);
+  }
+  template <typename T>
+  static std::vector<std::string> wordsOf(const std::map<std::string, T>& named) {
+    std::vector<std::string> words;
+    for (const auto& entry : named) words.push_back(entry.first);
+    return words;
+  }
+
+  // Options that many commands have.
+  void map(std::string& path);                           ///< MAP
+  void output(Output& output, const std::string& help);  ///< -o (required) and --force
+  Option force(bool& value, const std::string& help = "replace an existing output");
+  Option seed(std::uint64_t& value, const std::string& help);
+  Option threads(int& value);
+  void json(bool& value);
+  /// --scale. T: int or std::optional<int>.
+  template <typename T>
+  Option scale(T& value, const std::string& help) {
+    return number("--scale", value, 0, 63, help);
+  }
+
+  /// Of these options, only one may be given.
+  void exclusive(const std::vector<std::string>& names);
+  /// The option may be given with none of the others.
+  void excludes(const std::string& name, const std::vector<std::string>& others);
+  bool isGiven(const std::string& name) const;
+  /// The name of an option of this group that was given; empty if there is none.
+  std::string givenOf(const std::string& group) const;
+
+  /// What the command does, after its options have been read.
+  void onRun(const std::function<void()>& run);
+  /// Leaves all words after the name of the command, also --help, to `run`.
+  void passOn(const std::function<void(const std::vector<std::string>&)>& run);
+
+ private:
+  Option choice(const std::string& name, const std::vector<std::string>& words, const std::string& now,
+                const std::function<void(const std::string&)>& set, const std::string& help);
+  CLI::App* app_;
+};
+
+}  // namespace gaussmap::app

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "common/command.h"
+
+namespace gaussmap::app {
+
+/// Lays out the help of a command: --help shows the options of the default group and the example, --help-all
+/// everything.
+std::shared_ptr<CLI::Formatter> makeHelpFormatter(const Help& help);
+
+}  // namespace gaussmap::app

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "common/usage.h"
+
+#include <unistd.h>
+
+#include <set>
+#include <system_error>
+
+namespace gaussmap::app {
+
+void checkScale(const std::string& option, int scale, int scales, const std::string& owner) {
+  if (scale >= scales)
+    throw UsageError(option + " " + std::to_string(scale) + ": " + owner + " has the scales 0 to " +
+                     std::to_string(scales - 1));
+}
+
+void requireExtension(const std::filesystem::path& path, const std::string& extension) {
+  if (path.extension() != extension) throw UsageError(path.string() + ": the name must end in " + extension);
+}
+
+void checkOutput(const Output& output, const std::vector<std::filesystem::path>& inputs) {
+  const std::filesystem::path path = output.path, folder = path.has_parent_path() ? path.parent_path() : ".";
+  std::error_code error;
+  for (const std::filesystem::path& input : inputs)
+    for (const char* const written : {"", ".part"})  // the second one exists while the output is written
+      if (std::filesystem::equivalent(output.path + written, input, error))
+        throw UsageError(output.path + ": writing it would destroy the input " + input.string() +
+                         ", take another name");
+  if (std::filesystem::is_directory(path, error) || !path.has_filename())
+    throw UsageError("'" + output.path + "' is a directory: give the name of a file");
+  if (!std::filesystem::is_directory(folder, error))
+    throw UsageError(output.path + ": the directory " + folder.string() + " does not exist");
+  if (access(folder.c_str(), W_OK) != 0)
+    throw UsageError(output.path + ": the directory " + folder.string() + " cannot be written to");
+  if (std::filesystem::exists(path, error) && !output.force)
+    throw UsageError(output.path + " exists already: take another name, or --force to replace it");
+}
+
+void checkMapOutput(const Output& output, const std::vector<std::filesystem::path>& inputs) {
+  checkOutput(output, inputs);
+  if (std::filesystem::path(output.path).extension() == ".pcd")
+    throw UsageError(output.path +
+                     ": a map file is not a PCD file, name it .gmap (gaussmap export makes a PCD file of it)");
+}
+
+void checkOutputs(const std::vector<std::string>& outputs, bool force, const std::vector<std::filesystem::path>& inputs,
+                  const std::vector<std::filesystem::path>& taken) {
+  std::set<std::filesystem::path> all;
+  for (const std::filesystem::path& path : taken) all.insert(std::filesystem::weakly_canonical(path));
+  for (const std::string& output : outputs) {
+    if (output.empty()) continue;
+    if (!all.insert(std::filesystem::weakly_canonical(output)).second)
+      throw UsageError(output + " is another output of this command already: take another name");
+    checkOutput({output, force}, inputs);
+  }
+}
+
+void makeFolder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw UsageError(folder.string() + ": the directory cannot be made: " + error.message());
+}
+
+}  // namespace gaussmap::app

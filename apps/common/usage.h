@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace gaussmap::app {
+
+/// Options that make no sense: exit code 2. Every other error is exit code 1.
+struct UsageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Throws UsageError if the map has no such scale. `option` such as "--scale"; `owner` is named in the message.
+void checkScale(const std::string& option, int scale, int scales, const std::string& owner = "the map");
+
+/// Throws UsageError unless the path has this extension, such as ".pcd".
+void requireExtension(const std::filesystem::path& path, const std::string& extension);
+
+/// An output file, and whether it may replace an existing one.
+struct Output {
+  std::string path;
+  bool force = false;
+};
+
+/// Throws UsageError, before any work is done, if the output is one of the inputs, is a directory, exists and --force
+/// is not given, or if its directory does not exist or is not writable.
+void checkOutput(const Output& output, const std::vector<std::filesystem::path>& inputs = {});
+/// The same for a map file, which must not be named like a PCD file.
+void checkMapOutput(const Output& output, const std::vector<std::filesystem::path>& inputs);
+/// The same for several outputs of one command, which must all be different, also from those in `taken`. Empty names
+/// are skipped.
+void checkOutputs(const std::vector<std::string>& outputs, bool force, const std::vector<std::filesystem::path>& inputs,
+                  const std::vector<std::filesystem::path>& taken = {});
+
+/// Creates the directory unless it exists. Throws UsageError if that fails.
+void makeFolder(const std::filesystem::path& folder);
+
+}  // namespace gaussmap::app

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "gaussmap/segments/segment_map.h"
+
+namespace gaussmap::app {
+
+/// What a picture shows besides the segments.
+struct SegmentPicture {
+  std::vector<Vector<2>> evidence;  ///< points [m], map frame
+  /// A circle in which the map has more detail [m].
+  struct Field {
+    Vector<2> centre{0.0, 0.0};
+    double radius = 0.0;
+  };
+  std::optional<Field> field;
+};
+
+/// Writes SVG: each chain in one colour, its segments with their end points, a pale band on the free side, a scale
+/// bar. Throws FileError if it cannot be written.
+void drawSegments(const SegmentMap& map, const SegmentPicture& picture, const std::filesystem::path& path);
+
+}  // namespace gaussmap::app

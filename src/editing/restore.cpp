@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "editing/restore.h"
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "core/number_text.h"
+#include "gaussmap/mapping/build.h"
+#include "gaussmap/mapping/refine.h"
+#include "map/inherit_occupancy.h"
+
+namespace gaussmap::detail {
+namespace {
+
+constexpr std::int64_t kMostPointsOfACell = (std::int64_t{1} << 33) - 1;  // see CellMoments
+
+/// The shortest decimal number that is read as the same value.
+/// Throws unless the sums of a finest cluster belong to its cell in such a grid.
+void checkSums(const RemovedCluster<3>& one, const Grid<3>& grid) {
+  const std::string name = "the cluster of cell " + toString<3>(one.key);
+  if (one.moments.count == 0)
+    throw std::invalid_argument(name + " has no exact sums: it was deleted under --learning-rate occupancy");
+  const double side = grid.side(0);
+  const Eigen::Vector3d from_sums = grid.centre(one.key, 0) + one.moments.mean(side);
+  // Far coordinates are rounded. In a grid of another resolution the cell is somewhere else.
+  if (!((from_sums - one.gaussian.mean).norm() <= 1e-3 * side) || grid.keyOf(from_sums) != one.key)
+    throw std::invalid_argument(name + " does not lie there in cells of " + numberText(side) +
+                                " m: it was deleted from a map of another resolution");
+}
+
+/// The moments of the map and of the clusters inside. Counts the latter.
+MomentGrid<3> sumsOf(const GaussianMap<3>& map, const std::vector<RemovedCluster<3>>& removed,
+                     const std::function<bool(const Vector<3>&)>& isInside, std::size_t& clusters) {
+  MomentGrid<3> sums(map.grid().side(0));
+  std::int64_t most = 0;
+  for (std::size_t i = 0; i < map.cellCount(0); ++i) {
+    sums.add(map.scale(0).keys[i], map.scale(0).moments[i]);
+    most = std::max(most, map.scale(0).moments[i].count);
+  }
+  for (const RemovedCluster<3>& one : removed) {
+    if (one.scale > 0) continue;  // coarse scales are rebuilt
+    checkSums(one, map.grid());
+    if (!isInside(one.gaussian.mean)) continue;
+    most += one.moments.count;
+    if (most > kMostPointsOfACell) throw std::invalid_argument("too many points for one cell");
+    sums.add(one.key, one.moments);
+    ++clusters;
+  }
+  return sums;
+}
+
+/// Log-odds of the finest cells. Restored cells are certain: the user knows that something is there.
+std::vector<float> occupancyAfter(const GaussianMap<3>& map, const GaussianMap<3>& old) {
+  std::vector<float> log_odds;
+  for (std::size_t cell = 0; cell < map.cellCount(0); ++cell) {
+    const std::optional<std::size_t> before = old.find(map.scale(0).keys[cell], 0);
+    const bool is_as_before = before && old.scale(0).moments[*before] == map.scale(0).moments[cell];
+    log_odds.push_back(is_as_before ? old.logOdds(*before, 0) : kMaxOccupancy);
+  }
+  return log_odds;
+}
+
+GaussianMap<3> rebuilt(const MomentGrid<3>& sums, const GaussianMap<3>& old, int threads) {
+  GaussianMap<3> map = build<3>(sums, old.options());
+  if (old.hasOccupancy()) map = withOccupancy<3>(map, occupancyAfter(map, old));
+  RefineOptions options;
+  MaxGaussians budget;
+  options.threads = threads;
+  bool is_unrefined = true;
+  for (int s = 1; s < map.scales(); ++s) {
+    budget.by_scale[s] = std::max(old.gaussianCount(s), map.cellCount(s));
+    is_unrefined = is_unrefined && budget.by_scale[s] == map.cellCount(s);
+  }
+  return is_unrefined ? map : refine<3>(std::move(map), budget, options).map;
+}
+
+}  // namespace
+
+RestoredMap restoreClusters(const GaussianMap<3>& map, const std::vector<RemovedCluster<3>>& removed,
+                            const std::function<bool(const Vector<3>&)>& isInside, int threads) {
+  if (!map.canGrow()) throw std::invalid_argument("restore: the map has no moments");
+  RestoredMap restored;
+  const MomentGrid<3> sums = sumsOf(map, removed, isInside, restored.clusters);
+  restored.points = sums.pointCount() - static_cast<std::int64_t>(map.weight(0));
+  restored.map = rebuilt(sums, map, threads);
+  return restored;
+}
+
+}  // namespace gaussmap::detail

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+
+#include "gaussmap/core/error.h"
+#include "gaussmap/editing/diff_maps.h"
+
+namespace gaussmap::detail {
+
+/// Writes a comparison of a scale of two maps as a PCD file: all Gaussians of the second map, and those of the first
+/// that are gone. Fields: x y z (floats, relative to the VIEWPOINT) covariance[6] weight p_value label (Change as a
+/// number). Throws FileError if it cannot be written.
+void writeDiffPcd(const std::filesystem::path& path, const GaussianMap<3>& first, const GaussianMap<3>& second,
+                  const MapDiff& diff, int scale);
+
+}  // namespace gaussmap::detail
