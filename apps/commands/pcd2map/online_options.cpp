@@ -48,7 +48,7 @@ void checkOnline(const OnlineInput& input, const BudgetInput& budget, const Outp
   if (!input.on) return;
   if (!budget.max_gaussians.empty() || !budget.max_bytes.empty() || budget.max_error > 0.0)
     throw UsageError("--online takes --budget only: refine the map afterwards for another limit");
-  if (budget.cost || budget.cells) throw UsageError("--online takes neither --cost nor --cells");
+  if (budget.cost) throw UsageError("--online takes no --cost");
   if (budget.refine.seed != RefineOptions().seed) throw UsageError("--online takes no --seed");
   checkOutputs({input.stats, input.removed}, map.force, inputs, {map.path});
 }

@@ -90,7 +90,7 @@ TEST_F(BuiltFile, BreaksTiesAsInMemory) {  // equal cells all over: which of the
 }
 
 TEST_F(BuiltFile, HoldsPointsFarApartAndNone) {
-  expectSameFile({{0, 0, 0}, {1e7, -1e7, 3}, {2e8, -2e8, 2e8}, {1e7, -1e7, 3.01}}, {0.1, 10, 3, 0.0}, 3.0);
+  expectSameFile({{0, 0, 1}, {1e7, -1e7, 3}, {2e8, -2e8, 2e8}, {1e7, -1e7, 3.01}}, {0.1, 10, 3, 0.0}, 3.0);
   expectSameFile({{1, 2, 3}}, {0.1, 5, 4, 0.0}, 3.0);
   expectSameFile({}, {0.1, 5, 4, 0.0}, 3.0);
 }
