@@ -9,8 +9,7 @@ cd "$(dirname "$0")/.."
 
 ./cmake/install-deps.sh
 launcher=$(command -v ccache || true)
-cmake -S . -B build/demo -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER_LAUNCHER="$launcher" \
-  -DGAUSSMAP_BUILD_PCL=OFF -DGAUSSMAP_BUILD_TESTS=OFF >/dev/null
+cmake --preset demo -DCMAKE_CXX_COMPILER_LAUNCHER="$launcher" >/dev/null
 cmake --build build/demo -j 2 | tail -n 1
 gaussmap=build/demo/apps/gaussmap
 

@@ -7,7 +7,7 @@
 
 #include "common/command.h"
 #include "common/report.h"
-#include "gaussmap/io/gmap/map_history.h"
+#include "gaussmap/io/gmap/map_file.h"
 
 namespace gaussmap::app {
 namespace {

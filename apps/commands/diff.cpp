@@ -35,7 +35,7 @@ void run(const DiffCommand& options) {
     checkOutput({options.output, options.force}, {options.first, options.second});
   }
   const double start = now();
-  const GaussianMap<3> first = loadAnyMap(options.first), second = loadAnyMap(options.second);
+  const GaussianMap<3> first = loadAny(options.first), second = loadAny(options.second);
   const int s = options.diff.scale;
   checkScale("--scale", s, first.scales(), options.first);
   checkScale("--scale", s, second.scales(), options.second);

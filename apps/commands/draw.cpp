@@ -38,7 +38,7 @@ std::optional<Box<2>> givenWindow(const std::vector<double>& box) {
 }
 
 Panel panelOf(const std::string& path, const DrawCommand& options) {
-  const GaussianMap<3> map = loadAnyMap(path);
+  const GaussianMap<3> map = loadAny(path);
   const int scale = options.scale.value_or(map.scales() - 1);
   checkScale("--scale", scale, map.scales(), path);
   const std::size_t count = map.gaussianCount(scale);

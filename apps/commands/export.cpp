@@ -8,8 +8,7 @@
 #include "commands/commands.h"
 #include "common/command.h"
 #include "common/report.h"
-#include "gaussmap/io/export/gaussian_ply.h"
-#include "gaussmap/io/export/gaussian_table.h"
+#include "gaussmap/io/export/map_export.h"
 #include "gaussmap/io/pcd/map_pcd.h"
 
 namespace gaussmap::app {
@@ -61,13 +60,13 @@ void checkPlyOptions(const ExportCommand& options, const std::string& ending) {
 
 std::size_t write(const ExportCommand& options, const GaussianMap<3>& map, const std::string& ending) {
   const std::filesystem::path target = options.output.path;
-  if (ending == ".csv") return writeGaussianCsv(target, map, options.scale);
-  if (ending == ".vtp") return writeGaussianVtp(target, map, options.scale);
-  if (ending == ".ply") return writeGaussianPly(target, map, plyOptions(options));
+  if (ending == ".csv") return saveCsv(target, map, options.scale);
+  if (ending == ".vtp") return saveVtp(target, map, options.scale);
+  if (ending == ".ply") return savePly(target, map, plyOptions(options));
   ExportOptions pcd;
   pcd.overwrite = options.output.force;
   pcd.scale = options.scale;
-  saveMapPcd(map, target, pcd);
+  savePcd(target, map, pcd);
   std::size_t count = 0;
   for (int s = 0; s < map.scales(); ++s) count += !options.scale || *options.scale == s ? map.gaussianCount(s) : 0;
   return count;
@@ -79,7 +78,7 @@ void run(const ExportCommand& options) {
     throw UsageError(options.output.path + ": the name must end in .pcd, .ply, .vtp or .csv");
   checkPlyOptions(options, ending);
   checkOutput(options.output, {options.map});
-  const GaussianMap<3> map = loadAnyMap(options.map);
+  const GaussianMap<3> map = loadAny(options.map);
   if (options.scale) checkScale("--scale", *options.scale, map.scales());
   const std::size_t count = write(options, map, ending);
   std::cout << options.output.path << ": " << count << " Gaussians, "

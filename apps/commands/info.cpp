@@ -113,7 +113,7 @@ std::vector<ErrorCurve> curvesOf(const MapMetadata& metadata) {
 
 MapInfo readInfo(const std::string& path) {
   MapInfo info;
-  info.map = loadAnyMap(path, &info.metadata);
+  info.map = loadAny(path, &info.metadata);
   info.curves = curvesOf(info.metadata);
   info.extent = extentOf<3>(info.map);
   info.scales = scalesOf(info.map);

@@ -29,7 +29,7 @@ MapTask::MapTask(const MapTaskOptions& options, const std::vector<std::filesyste
 }
 
 GaussianMap<3> MapTask::load(const std::string& path) {
-  return loadAnyMap(path, &metadata);
+  return loadAny(path, &metadata);
 }
 
 void MapTask::addStep(const char* command, const Json& more) {
@@ -40,7 +40,7 @@ void MapTask::addStep(const char* command, const Json& more) {
 void MapTask::save(const GaussianMap<3>& map, SaveOptions save) const {
   save.overwrite = options_.output.force;
   save.threads = options_.threads;
-  saveMap<3>(map, options_.output.path, metadata, save);
+  gaussmap::save(options_.output.path, map, metadata, save);
 }
 
 void MapTask::report(const MapReport& report) const {

@@ -50,7 +50,7 @@ GaussianMap<3> merged(const MergeCommand& command, const std::vector<RigidMotion
   GaussianMap<3> merged = task.load(paths.front());
   if (command.exact) requireExact(merged, paths.front(), !motions.empty());
   for (std::size_t i = 1; i < paths.size(); ++i) {
-    GaussianMap<3> next = loadAnyMap(paths[i]);
+    GaussianMap<3> next = loadAny(paths[i]);
     if (command.exact) requireExact(next, paths[i], false);
     TransformOptions to;
     to.grid = merged.options();

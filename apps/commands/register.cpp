@@ -79,7 +79,7 @@ void print(const std::filesystem::path& scan, const RegistrationResult& result) 
 
 RegistrationResult registerFile(const std::filesystem::path& path, const GaussianMap<3>& map, const Pose& guess,
                                 const RegistrationOptions& options) {
-  if (isMap(path)) return registerMap(loadAnyMap(path), map, guess, options);
+  if (isMap(path)) return registerMap(loadAny(path), map, guess, options);
   return registerScan(PcdScans({{path, Pose()}}).read(0).points, map, guess, options);
 }
 
@@ -92,7 +92,7 @@ void run(const RegisterCommand& command) {
     checkOutput({command.tum, command.force}, inputs);
   }
   Pose guess = guessOf(command, scans.front());
-  const GaussianMap<3> map = loadAnyMap(map_path);
+  const GaussianMap<3> map = loadAny(map_path);
   if (map.empty()) throw FileError(map_path, "is an empty map: there is nothing to register with");
 
   Json all = Json::array();

@@ -6,7 +6,7 @@
 
 #include "common/command.h"
 #include "gaussmap/io/scans/pcd_scans.h"
-#include "gaussmap/mapping/accumulate_scans.h"
+#include "gaussmap/mapping/build.h"
 
 namespace gaussmap::app {
 

@@ -52,7 +52,7 @@ FittedSegments mapOf(const Command& given, const SegmentsCommand& command) {
   if (is_pcd && isSegmentPcd(paths[0])) {
     checkFinished(given, command);
     FittedSegments finished;
-    finished.map = readSegmentPcd(paths[0]);
+    finished.map = loadSegmentsPcd(paths[0]);
     return finished;
   }
   fitterOptions(command.fitter);  // its complaints come before the work of reading
@@ -105,7 +105,7 @@ void run(const Command& given, const SegmentsCommand& command) {
     held_out = scoreHoldOut(fitted.map, test.scans);
   }
   std::optional<WallScore> walls;
-  if (!command.walls.empty()) walls = scoreWalls(fitted.map, readSegmentPcd(command.walls).segments);
+  if (!command.walls.empty()) walls = scoreWalls(fitted.map, loadSegmentsPcd(command.walls).segments);
 
   for (const std::string& output : command.outputs) writeSegments(output, fitted);
   if (!command.stats.empty()) writeText(command.stats, fitted.statistics);

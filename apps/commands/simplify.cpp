@@ -9,7 +9,7 @@
 #include "commands/map_task.h"
 #include "common/command.h"
 #include "common/report.h"
-#include "gaussmap/io/gmap/map_history.h"
+#include "gaussmap/io/gmap/map_file.h"
 
 namespace gaussmap::app {
 namespace {

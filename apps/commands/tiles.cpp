@@ -28,12 +28,12 @@ If the input is a directory of tiles, a map is made of it. From tiles of the fin
 Gaussian per coarse cell (gaussmap refine adds more). Tiles hold no moments: the map accepts no more scans.)"};
 
 void toTiles(const TilesCommand& command) {
-  const GaussianMap<3> map = loadAnyMap(command.map);
+  const GaussianMap<3> map = loadAny(command.map);
   checkScale("--scale", command.scale, map.scales());
   TilesOptions to;
   to.size = command.size;
   to.scale = command.all_scales ? std::nullopt : std::optional<int>(command.scale);
-  const WrittenTiles written = saveTiles(map, command.output.path, to);
+  const WrittenTiles written = saveTiles(command.output.path, map, to);
   if (command.json)
     printJson({{"directory", command.output.path}, {"tiles", written.tiles}, {"gaussians", written.gaussians}});
   else

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "gaussmap/mapping/budget.h"
+#include "gaussmap/mapping/refine.h"
 
 namespace gaussmap::app {
 

@@ -91,7 +91,7 @@ void run(const SimulateCommand& options) {
   writePcd(files.truth_points, truth, PcdPrecision::Double);
   writePly(files.truth_mesh, simulation.world.mesh());
   writeTum(files.trajectory, simulation.trajectory);
-  if (!files.walls.empty()) writeSegmentPcd(files.walls, planMap());
+  if (!files.walls.empty()) saveSegmentsPcd(files.walls, planMap());
   std::cout << options.output.path << ": " << options.scene << ", " << files.scans.size()
             << (files.scans.size() == 1 ? " scan, " : " scans, ") << points << " points";
   if (options.world.moving) std::cout << " (" << points - truth.size() << " on moving objects)";

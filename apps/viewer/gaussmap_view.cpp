@@ -109,9 +109,9 @@ void run(ViewCommand command) {
   scene.name = std::filesystem::path(command.map).filename().string();
   if (std::filesystem::exists(command.map) && !isGmap(command.map) && isSegmentPcd(command.map)) {
     checkForSegments(command);
-    scene.map = readSegmentPcd(command.map);
+    scene.map = loadSegmentsPcd(command.map);
   } else {
-    GaussianMap<3> map = loadAnyMap(command.map);
+    GaussianMap<3> map = loadAny(command.map);
     if (map.empty()) throw std::runtime_error(command.map + ": there is no Gaussian in it");
     setScale(command, map, view);
     scene.map = std::move(map);

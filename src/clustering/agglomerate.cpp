@@ -109,7 +109,7 @@ Dendrogram agglomerate(const std::vector<Gaussian<D>>& data, const std::vector<d
                        const AgglomerateOptions& options) {
   checkOptions(options);
   MergeHistory<D> history(data, areas, options.cost);
-  if (data.size() > options.most_exact) mergeNeighbours(history, options.neighbours, options.restricted_until);
+  if (data.size() > options.max_exact) mergeNeighbours(history, options.neighbours, options.restricted_until);
   ExactMerging<D>(history).run();
   return std::move(history.dendrogram);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "kl_problem.h"
 
 namespace gaussmap::detail {

@@ -28,18 +28,13 @@ Pose normalised(const Pose& pose) {
   return {pose.translation, pose.rotation.normalized()};
 }
 
-void transform(const Pose& pose, PointBlock<3>& block) {
-  const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
-  const Eigen::Vector3d& t = pose.translation;
-  double* x = block.coordinate[0];
-  double* y = block.coordinate[1];
-  double* z = block.coordinate[2];
-  for (std::size_t i = 0; i < block.size; ++i) {
-    const double px = x[i], py = y[i], pz = z[i];
-    x[i] = rotation(0, 0) * px + rotation(0, 1) * py + rotation(0, 2) * pz + t.x();
-    y[i] = rotation(1, 0) * px + rotation(1, 1) * py + rotation(1, 2) * pz + t.y();
-    z[i] = rotation(2, 0) * px + rotation(2, 1) * py + rotation(2, 2) * pz + t.z();
-  }
+Pose Pose::operator*(const Pose& other) const {
+  return {*this * other.translation, (rotation * other.rotation).normalized()};
+}
+
+Pose Pose::inverse() const {
+  const Rotation back = rotation.conjugate();
+  return {-(back * translation), back};
 }
 
 }  // namespace gaussmap

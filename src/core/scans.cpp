@@ -27,6 +27,20 @@ class MemoryScanReader : public ScanReader {
 
 }  // namespace
 
+void transform(const Pose& pose, PointBlock<3>& block) {
+  const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
+  const Eigen::Vector3d& t = pose.translation;
+  double* x = block.coordinate[0];
+  double* y = block.coordinate[1];
+  double* z = block.coordinate[2];
+  for (std::size_t i = 0; i < block.size; ++i) {
+    const double px = x[i], py = y[i], pz = z[i];
+    x[i] = rotation(0, 0) * px + rotation(0, 1) * py + rotation(0, 2) * pz + t.x();
+    y[i] = rotation(1, 0) * px + rotation(1, 1) * py + rotation(1, 2) * pz + t.y();
+    z[i] = rotation(2, 0) * px + rotation(2, 1) * py + rotation(2, 2) * pz + t.z();
+  }
+}
+
 PointCounts& PointCounts::operator+=(const PointCounts& other) {
   read += other.read;
   accepted += other.accepted;

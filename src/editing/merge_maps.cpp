@@ -128,7 +128,7 @@ class Merger {
       if (pair.a) moments = a_.scale(0).moments[*pair.a];
       if (pair.b) {
         const CellMoments<D>& more = b_.scale(0).moments[*pair.b];
-        if (more.count > CellMoments<D>::kMostPoints - moments.count)
+        if (more.count > CellMoments<D>::kMaxPoints - moments.count)
           throw std::invalid_argument("cell " + toString<D>(finest.key()) + " would hold " +
                                       std::to_string(moments.count + more.count) +
                                       " points, more than 2^33 - 1: take finer cells");

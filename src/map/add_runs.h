@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "gaussmap/core/cell_moments.h"
-#include "gaussmap/core/point_block.h"
+#include "gaussmap/core/scans.h"
 
 namespace gaussmap::detail {
 

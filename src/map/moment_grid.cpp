@@ -155,7 +155,7 @@ void requireRoom(const MomentGrid<D>& grid, const LatticeBlock<D>& block, const 
   for (std::size_t run = 0; run < runs; ++run) {
     const CellKey<D> key = block.key(starts[run]);
     const CellMoments<D>* known = grid.find(key);
-    if (known == nullptr || known->count <= CellMoments<D>::kMostPoints - std::int64_t{kBlock}) continue;
+    if (known == nullptr || known->count <= CellMoments<D>::kMaxPoints - std::int64_t{kBlock}) continue;
     std::int64_t more = 0;
     for (std::size_t i = 0; i < block.size; ++i) more += same<D>(block.key(i), key);
     known->requireRoom(more);
@@ -191,7 +191,7 @@ std::size_t MomentGrid<D>::add(const PointBlock<D>& block) {
     runs += lattice.begins[i];
   }
   starts[runs] = static_cast<std::uint32_t>(lattice.size);
-  if (point_count_ > CellMoments<D>::kMostPoints - std::int64_t{kBlock}) requireRoom(*this, lattice, starts, runs);
+  if (point_count_ > CellMoments<D>::kMaxPoints - std::int64_t{kBlock}) requireRoom(*this, lattice, starts, runs);
   std::uint32_t candidates[kBlock];
   for (std::size_t run = 0; run < runs; ++run) {
     candidates[run] = candidate(lattice.hash[starts[run]]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/mapping/accumulate_scans.h"
+#include "gaussmap/mapping/build.h"
 
 #include <tbb/enumerable_thread_specific.h>
 

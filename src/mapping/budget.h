@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <functional>
 
-#include "gaussmap/mapping/budget.h"
 #include "gaussmap/mapping/refine.h"
 
 namespace gaussmap::detail {

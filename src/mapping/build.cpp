@@ -58,6 +58,13 @@ GaussianMap<D> build(const MapScale<D>& cells, const MapOptions& options) {
   return withCoarserScales<D>(std::move(finest), Grid<D>(options));
 }
 
+GaussianMap<3> build(const Scans& scans, const MapOptions& options, AccumulateOptions reading, PointCounts* counts) {
+  reading.resolution = Grid<3>(options).options().resolution;
+  const AccumulatedScans accumulated = accumulateScans(scans, reading);
+  if (counts != nullptr) *counts = accumulated.counts;
+  return build<3>(accumulated.moments, options);
+}
+
 #define GAUSSMAP_INSTANTIATE(D)                                                         \
   template GaussianMap<D> build<D>(const MomentGrid<D>&, const MapOptions&);            \
   template GaussianMap<D> build<D>(const std::vector<Vector<(D)>>&, const MapOptions&); \

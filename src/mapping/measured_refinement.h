@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "gaussmap/mapping/budget.h"
 #include "gaussmap/mapping/refine.h"
 
 namespace gaussmap::detail {

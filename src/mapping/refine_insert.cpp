@@ -6,7 +6,7 @@
 
 #include "core/parallel.h"
 #include "gaussmap/clustering/kl_kmeans.h"
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "mapping/cell_error.h"
 
 namespace gaussmap::detail {

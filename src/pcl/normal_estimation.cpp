@@ -3,10 +3,10 @@
 
 namespace gaussmap {
 
-template class GaussianMapNormalEstimation<pcl::PointXYZ, pcl::Normal>;
-template class GaussianMapNormalEstimation<pcl::PointXYZI, pcl::Normal>;
-template class GaussianMapNormalEstimation<pcl::PointXYZRGB, pcl::Normal>;
-template class GaussianMapNormalEstimation<pcl::PointNormal, pcl::Normal>;
-template class GaussianMapNormalEstimation<pcl::PointXYZINormal, pcl::Normal>;
+template class CellNormalEstimation<pcl::PointXYZ, pcl::Normal>;
+template class CellNormalEstimation<pcl::PointXYZI, pcl::Normal>;
+template class CellNormalEstimation<pcl::PointXYZRGB, pcl::Normal>;
+template class CellNormalEstimation<pcl::PointNormal, pcl::Normal>;
+template class CellNormalEstimation<pcl::PointXYZINormal, pcl::Normal>;
 
 }  // namespace gaussmap

@@ -38,7 +38,7 @@ struct PartNode {
 };
 
 void checkOptions(const SplitPointsOptions& options) {
-  require(options.most_parts >= 1, "most_parts", static_cast<double>(options.most_parts), "must be at least 1");
+  require(options.max_parts >= 1, "max_parts", static_cast<double>(options.max_parts), "must be at least 1");
   require(options.max_error >= 0.0 && std::isfinite(options.max_error), "max_error", options.max_error,
           "must be finite and not negative");
   require(options.rounds >= 0, "rounds", options.rounds, "must not be negative");
@@ -217,14 +217,14 @@ PointParts movedToNearest(const Points& points, const PointParts& start, const S
   return parts;
 }
 
-/// As few parts as keep the error, most_parts if none do.
+/// As few parts as keep the error, max_parts if none do.
 PointParts withinError(Splitter& splitter, const Points& points, const SplitPointsOptions& options) {
   const auto make = [&](std::size_t count) { return partsOf(points, splitter.labels(count), count, options); };
   std::size_t too_few = 0, enough = 1;
   PointParts best = make(1);
-  while (best.error > options.max_error && enough < options.most_parts) {
+  while (best.error > options.max_error && enough < options.max_parts) {
     too_few = enough;
-    splitter.splitTo(std::min(2 * enough, options.most_parts));
+    splitter.splitTo(std::min(2 * enough, options.max_parts));
     if (splitter.parts() == enough) return best;  // equal points only
     enough = splitter.parts();
     best = make(enough);
@@ -271,7 +271,7 @@ PointParts splitPoints(const std::vector<Vector<3>>& points, const SplitPointsOp
   if (options.max_error > 0.0) {
     parts = withinError(splitter, points, options);
   } else {
-    splitter.splitTo(options.most_parts);
+    splitter.splitTo(options.max_parts);
     parts = partsOf(points, splitter.labels(splitter.parts()), splitter.parts(), options);
   }
   if (options.rule == SplitRule::Distance && options.rounds > 0) {

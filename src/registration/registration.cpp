@@ -29,7 +29,7 @@ void check(const GaussianMap<3>& map, const Pose& guess, const RegistrationOptio
   if (const std::string fault = poseFault(guess); !fault.empty()) throw std::invalid_argument("guess: " + fault);
   require(options.resolution >= 0.0 && std::isfinite(options.resolution), "resolution", options.resolution,
           "must be positive and finite (0 = the finest cells)");
-  require(options.most_gaussians >= 1, "most_gaussians", double(options.most_gaussians), "must be at least 1");
+  require(options.max_gaussians >= 1, "max_gaussians", double(options.max_gaussians), "must be at least 1");
   require(options.max_iterations >= 1, "max_iterations", options.max_iterations, "must be at least 1");
   require(options.kernel > 0.0, "kernel", options.kernel, "must be positive");
   require(options.translation > 0.0, "translation", options.translation, "must be positive");
@@ -83,8 +83,8 @@ RegistrationResult align(const GaussianMap<3>& source, const GaussianMap<3>& map
                          const RegistrationOptions& options) {
   RegistrationResult result;
   result.pose = normalised(guess);
-  const std::vector<Gaussian<3>> fine = gaussiansOf(source, side, options.most_gaussians),
-                                 coarse = gaussiansOf(source, kCoarse * side, options.most_gaussians);
+  const std::vector<Gaussian<3>> fine = gaussiansOf(source, side, options.max_gaussians),
+                                 coarse = gaussiansOf(source, kCoarse * side, options.max_gaussians);
   if (fine.empty()) return result;
   const Vector<3> origin = guess.translation;  // sums are taken about it: nothing is lost far away
   Pose pose = result.pose;

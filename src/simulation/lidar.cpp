@@ -8,7 +8,7 @@
 #include "core/check.h"
 #include "core/parallel.h"
 #include "core/pi.h"
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 
 namespace gaussmap {
 using namespace detail;

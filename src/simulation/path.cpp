@@ -37,7 +37,7 @@ Pose::Rotation turned(double yaw, double pitch, double roll) {
 }
 
 Pose chained(const Pose& second, const Pose& first) {
-  return normalised({second.rotation * first.translation + second.translation, second.rotation * first.rotation});
+  return second * first;
 }
 
 std::vector<TimedPose> drive(const std::vector<Eigen::Vector2d>& waypoints, int count, const PathOptions& options,

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/check.h"
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "mesh/shapes.h"
 #include "simulation/worlds.h"
 

@@ -2,7 +2,7 @@
 // What stands, parks and walks in the built-in worlds.
 #include <cmath>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "mesh/shapes.h"
 #include "simulation/worlds.h"
 

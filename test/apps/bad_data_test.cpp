@@ -67,7 +67,7 @@ TEST_F(Apps, NameTheMapThatIsDamaged) {
     expectDataError(map + ": ", {"export", map, own("x.pcd")});
   }
   expectDataError(own("flipped.gmap") + ": ", {"hausdorff", own("flipped.gmap"), scene("truth.pcd")});
-  saveMap<2>(build<2>({{1.0, 2.0}}, {}), own("plane.gmap"));
+  save<2>(own("plane.gmap"), build<2>({{1.0, 2.0}}, {}));
   expectDataError(own("plane.gmap") + ": ", {"info", own("plane.gmap")});
 }
 

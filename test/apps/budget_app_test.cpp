@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Budgets and error curves through the real program.
 #include "apps/app_fixture.h"
-#include "gaussmap/io/gmap/map_history.h"
+#include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/version.h"
 #include "io/gmap/map_equality.h"
 
@@ -86,7 +86,7 @@ TEST_F(BudgetApps, WriteTheBytesThatACallOfTheLibraryWrites) {
     recordStep(metadata, refineStep(budget, options, details));
     const auto* bytes = std::get_if<MaxBytes>(&budget);
     const Budget measured = bytes != nullptr ? Budget(maxFileBytes(bytes->bytes, metadata)) : budget;
-    saveMap(refine(loadMap<3>(scene("one.gmap")), measured, options), own("library.gmap"), metadata, {true});
+    save(own("library.gmap"), refine(load(scene("one.gmap")), measured, options), metadata, {true});
     return contentsOf(own("library.gmap")) == contentsOf(own(name));
   };
   const std::string command = R"({"command": "refine", "version": ")" GAUSSMAP_VERSION R"("})";
@@ -114,7 +114,7 @@ TEST_F(BudgetApps, KeepTheErrorCurvesAndDrawThem) {
 }
 
 TEST_F(BudgetApps, TakeErrorCurvesThatAreNoneForNone) {
-  const GaussianMapOctree map = loadMap<3>(scene("one.gmap"));
+  const GaussianMapOctree map = load(scene("one.gmap"));
   const std::string points = R"([{"scale":1,"points":[{"gaussians":GAUSSIANS,"q95":Q95,"mean":0.1}]}])";
   const auto curve = [&](const std::string& gaussians, const std::string& q95) {
     std::string text = points;
@@ -133,14 +133,14 @@ TEST_F(BudgetApps, TakeErrorCurvesThatAreNoneForNone) {
                                          curve("1e999", "0.2"),
                                          curve("\"3\"", "0.2")};
   for (const std::string& text : none) {
-    saveMap<3>(map, own("lying.gmap"), {{"error_curves", text}}, {true, 3, 0});
+    save(own("lying.gmap"), map, {{"error_curves", text}}, {true, 3, 0});
     EXPECT_EQ(runApp({"info", own("lying.gmap")}).code, 0) << text;
     const Outcome plot = runApp({"info", own("lying.gmap"), "--plot", own("lying.svg")});
     EXPECT_EQ(plot.code, 1) << text;
     EXPECT_NE(plot.err.find("has no error curves"), std::string::npos) << text << ": " << plot.err;
     EXPECT_FALSE(std::filesystem::exists(own("lying.svg")));
   }
-  saveMap<3>(map, own("lying.gmap"), {{"error_curves", curve("3", "0.2")}}, {true, 3, 0});
+  save(own("lying.gmap"), map, {{"error_curves", curve("3", "0.2")}}, {true, 3, 0});
   EXPECT_EQ(runApp({"info", own("lying.gmap"), "--plot", own("honest.svg")}).code, 0);
 }
 
@@ -156,7 +156,7 @@ TEST_F(BudgetApps, MergeByTheCostAskedFor) {
   const auto refined = [&](const std::string& name, const std::vector<std::string>& options) {
     const Outcome outcome = refineWith(name, options);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
-    return loadMap<3>(own(name));
+    return load(own(name));
   };
   const GaussianMapOctree usual = refined("usual.gmap", {}), volume = refined("volume.gmap", {"--cost", "volume"}),
                           runnalls = refined("runnalls.gmap", {"--cost", "runnalls"});
@@ -165,7 +165,7 @@ TEST_F(BudgetApps, MergeByTheCostAskedFor) {
   EXPECT_EQ(runnalls.gaussianCount(1), usual.gaussianCount(1));
   EXPECT_EQ(infoOf(own("runnalls.gmap"))["metadata"]["history"][1]["cost"], "runnalls");
   succeed({"pcd2map", scene("scans"), "-o", own("direct.gmap"), "--cost", "runnalls"});
-  expectSameMap<3>(loadMap<3>(own("direct.gmap")), runnalls);
+  expectSameMap<3>(load(own("direct.gmap")), runnalls);
 }
 
 TEST_F(BudgetApps, RefuseOptionsOfTheOtherMethod) {

@@ -59,7 +59,7 @@ class DrawApp : public AppTest {
     MapScale<3> scale;
     scale.keys = keys;
     scale.gaussians = gaussians;
-    saveMap<3>(build<3>(scale, {10.0, 2, 1, 0.0}), own(name), {}, {true, 3, 0});
+    gaussmap::save(own(name), build<3>(scale, {10.0, 2, 1, 0.0}), {}, {true, 3, 0});
     return own(name);
   }
   std::string draw(std::vector<std::string> arguments) const {
@@ -153,7 +153,7 @@ TEST_F(DrawApp, RefusesMoreThanAViewerShowsAndNamesTheWayOut) {
   std::vector<Vector<3>> points;
   for (int x = 0; x < 460; ++x)
     for (int y = 0; y < 440; ++y) points.emplace_back(x + 0.5, y + 0.5, 0.5);
-  saveMap<3>(build<3>(points, {1.0, 10, 2, 0.0}), own("large.gmap"));
+  gaussmap::save(own("large.gmap"), build<3>(points, {1.0, 10, 2, 0.0}));
   expectUsageError("--box", {"draw", own("large.gmap"), "-o", own("x.svg"), "--scale", "0"});
   expectUsageError("202400 Gaussians", {"draw", own("large.gmap"), "-o", own("x.svg"), "--scale", "0"});
   EXPECT_EQ(ellipsesOf(draw({own("large.gmap"), "--scale", "0", "--box", "10", "10", "13", "12"})).size(), 6u);
@@ -162,7 +162,7 @@ TEST_F(DrawApp, RefusesMoreThanAViewerShowsAndNamesTheWayOut) {
 
 TEST_F(DrawApp, RefusesWhatItCannotDraw) {
   const std::string map = save("one.gmap", {{0, 0, 0}}, {turnedGaussian({0, 0, 0}, 0.0)});
-  saveMap<3>(GaussianMapOctree({1.0, 2, 1, 0.0}), own("empty.gmap"));
+  gaussmap::save(own("empty.gmap"), GaussianMapOctree({1.0, 2, 1, 0.0}));
   const std::string svg = own("x.svg");
   expectUsageError(".svg", {"draw", map, "-o", own("x.png")});
   expectUsageError("--scale", {"draw", map, "-o", svg, "--scale", "1"});

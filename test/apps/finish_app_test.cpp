@@ -12,7 +12,7 @@ TEST_F(Apps, FinishMakesASmallMapThatSaysThatItIsFinal) {
   EXPECT_EQ(said["bytes"], std::filesystem::file_size(own("final.gmap")));
   EXPECT_LT(said["bytes"], said["bytes_before"]);
   EXPECT_NE(said["error"].get<std::string>().find("5 %"), std::string::npos);
-  EXPECT_TRUE(sameMap<3>(loadMap<3>(own("final.gmap")), finish<3>(loadMap<3>(scene("map.gmap")))));
+  EXPECT_TRUE(sameMap<3>(load(own("final.gmap")), finish<3>(load(scene("map.gmap")))));
   const Json info = infoOf(own("final.gmap"));
   EXPECT_EQ(info["final"], true);
   EXPECT_EQ(info["takes_scans"], false);

@@ -74,11 +74,11 @@ TEST_F(Foreign, NamesAreOnlyNames) {
     const std::string map = folder / (name + ".gmap"), cloud = folder / (name + ".pcd"),
                       one = folder / (name + "1.gmap");
     succeed({"pcd2map", folder / "scans", "-o", map, "--budget", "1"});
-    expectSameMap<3>(loadMap<3>(map), loadMap<3>(scene("map.gmap")));
+    expectSameMap<3>(load(map), load(scene("map.gmap")));
     succeed({"pcd2map", folder / "scans" / (name + "scan00.pcd"), "-o", one, "--budget", "1", "--max-memory", "20M"});
     for (const char* const scan : {"scan01.pcd", "scan02.pcd", "scan03.pcd", "scan04.pcd"})
       succeed({"pcd2map", folder / "scans" / (name + scan), "--update", one});
-    expectSameMap<3>(loadMap<3>(one), loadMap<3>(map));
+    expectSameMap<3>(load(one), load(map));
     succeed({"export", map, cloud});
     EXPECT_EQ(contentsOf(cloud), contentsOf(scene("map.pcd")));
     succeed({"draw", map, "-o", folder / (name + ".svg")});
@@ -109,11 +109,11 @@ TEST_F(Foreign, TenThousandFilesAreAnOrdinaryCall) {
   const Outcome outcome = runApp(arguments, "", few_descriptors);
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("10000 scans, 10000 points"), std::string::npos) << outcome.out;
-  expectSameMap<3>(loadMap<3>(own("all.gmap")), build<3>(points, MapOptions()));
+  expectSameMap<3>(load(own("all.gmap")), build<3>(points, MapOptions()));
   const Outcome folder =
       runApp({"pcd2map", own("scans"), "-o", own("folder.gmap"), "--budget", "1"}, "", few_descriptors);
   EXPECT_EQ(folder.code, 0) << folder.err;
-  expectSameMap<3>(loadMap<3>(own("folder.gmap")), loadMap<3>(own("all.gmap")));
+  expectSameMap<3>(load(own("folder.gmap")), load(own("all.gmap")));
 }
 
 }  // namespace

@@ -52,9 +52,9 @@ class HausdorffApp : public testing::Test {
     writePcd(in("b.pcd"), b_);
     writePly(in("floor.ply"), floorMesh());
     const MapOptions options{0.1, 4, 2, 0.005};
-    saveMap(build<3>(a_, options), in("a.gmap"));
-    saveMap(build<3>(b_, options), in("b.gmap"));
-    saveMapPcd(build<3>(b_, options), in("b_map.pcd"));
+    save(in("a.gmap"), build<3>(a_, options));
+    save(in("b.gmap"), build<3>(b_, options));
+    savePcd(in("b_map.pcd"), build<3>(b_, options));
   }
   static void TearDownTestSuite() { inputs_.reset(); }
 
@@ -158,7 +158,7 @@ TEST_F(HausdorffApp, ComparesACloudWithAMesh) {
 }
 
 TEST_F(HausdorffApp, ComparesAMapWithAMesh) {
-  const GaussianMap<3> map = loadMap<3>(in("a.gmap"));
+  const GaussianMap<3> map = load(in("a.gmap"));
   const Json scales = json({in("a.gmap"), in("floor.ply"), "--samples", "4000"})["scales"];
   ASSERT_EQ(scales.size(), 2u);
   for (int s = 0; s < 2; ++s) {
@@ -170,7 +170,7 @@ TEST_F(HausdorffApp, ComparesAMapWithAMesh) {
 }
 
 TEST_F(HausdorffApp, BoundsSamplesByTheMembersOfTheirGaussiansOrAsInThePaperByCells) {
-  const GaussianMap<3> map = loadMap<3>(in("a.gmap"));
+  const GaussianMap<3> map = load(in("a.gmap"));
   const auto found = [&](std::vector<std::string> options) -> Json {
     options.insert(options.begin(), {in("a.gmap"), in("a.pcd"), "--scale", "1", "--samples", "4000"});
     return json(options)["scales"][0]["all"];
@@ -187,7 +187,7 @@ TEST_F(HausdorffApp, BoundsSamplesByTheMembersOfTheirGaussiansOrAsInThePaperByCe
 }
 
 TEST_F(HausdorffApp, ComparesAMapWithAMap) {
-  const GaussianMap<3> map = loadMap<3>(in("a.gmap")), other = loadMap<3>(in("b.gmap"));
+  const GaussianMap<3> map = load(in("a.gmap")), other = load(in("b.gmap"));
   const Json scales = json({in("a.gmap"), in("b.gmap"), "--samples", "4000"})["scales"];
   ASSERT_EQ(scales.size(), 2u);
   for (int s = 0; s < 2; ++s) {
@@ -221,7 +221,7 @@ TEST_F(HausdorffApp, PrintsTheSameForAnyNumberOfThreads) {
 // ---- held-out -------------------------------------------------------------------------------------------------------
 
 TEST_F(HausdorffApp, ScoresAMapWithHeldOutPoints) {
-  const GaussianMap<3> map = loadMap<3>(in("a.gmap"));
+  const GaussianMap<3> map = load(in("a.gmap"));
   const Json result = json({in("a.gmap"), in("b.pcd"), "--held-out", "--background", "0.1"});
   ASSERT_EQ(result["scales"].size(), 2u);
   for (int s = 0; s < 2; ++s) {
@@ -254,7 +254,7 @@ TEST_F(HausdorffApp, WritesTheErrorsOfTheSubject) {
   expectErrors(own("errors.pcd"), a_, distances.forward);
 
   succeed({in("a.gmap"), in("floor.ply"), "--scale", "1", "--samples", "3000", "--write-errors", own("map.pcd")});
-  const Points points = sampleMap(loadMap<3>(in("a.gmap")), 1, samples(3000)).points;
+  const Points points = sampleMap(load(in("a.gmap")), 1, samples(3000)).points;
   expectErrors(own("map.pcd"), points, meshDistances(points, floorMesh()));
 }
 
@@ -270,7 +270,7 @@ TEST_F(HausdorffApp, WritesTheErrorsOfTheReference) {
   expectErrors(own("errors.pcd"), b_, distances.backward);
 
   write({in("a.gmap"), in("b.pcd"), "--scale", "0", "--samples", "3000"});
-  Reference(b_).compare(loadMap<3>(in("a.gmap")), 0, samples(3000), &distances);
+  Reference(b_).compare(load(in("a.gmap")), 0, samples(3000), &distances);
   expectErrors(own("errors.pcd"), b_, distances.backward);
 
   write({in("a.pcd"), in("floor.ply"), "--samples", "300"});

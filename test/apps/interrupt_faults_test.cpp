@@ -97,7 +97,7 @@ TEST_F(Interrupted, BySignalsThatTheShellIgnoresGoOn) {  // nohup
   std::signal(SIGHUP, ignored);
   ASSERT_TRUE(app.runTo(writesPart));
   EXPECT_EQ(app.outcome(SIGHUP).code, 0);
-  EXPECT_EQ(loadMap<3>(own("new.gmap")).cellCount(0), loadMap<3>(scene("map.gmap")).cellCount(0));
+  EXPECT_EQ(load(own("new.gmap")).cellCount(0), load(scene("map.gmap")).cellCount(0));
 }
 
 TEST_F(Interrupted, ByASecondWriterFinishWhileThatOneIsTold) {
@@ -111,7 +111,7 @@ TEST_F(Interrupted, ByASecondWriterFinishWhileThatOneIsTold) {
     EXPECT_EQ(contentsOf(own("old.gmap")), bytes);
     EXPECT_EQ(first.outcome().code, 0);
     EXPECT_FALSE(fs::exists(own("old.gmap.part")));
-    loadMap<3>(own("old.gmap"));
+    load(own("old.gmap"));
   }
 }
 

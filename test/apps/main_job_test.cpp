@@ -8,7 +8,7 @@
 #include "gaussmap/io/pcd/pcd_reader.h"
 #include "gaussmap/io/pcd/pcd_writer.h"
 #include "gaussmap/io/scans/pcd_scans.h"
-#include "gaussmap/mapping/accumulate_scans.h"
+#include "gaussmap/mapping/build.h"
 #include "io/gmap/map_equality.h"
 
 namespace gaussmap::test {
@@ -66,9 +66,9 @@ TEST_F(Apps, MakeAMapOfScansAndSayHowGoodItIs) {
 TEST_F(Apps, RefineAMapAsPcd2mapWouldHave) {
   succeed({"pcd2map", scene("scans"), "-o", own("three.gmap"), "--budget", "3", "--seed", "5"});
   succeed({"refine", scene("map.gmap"), "-o", own("refined.gmap"), "--budget", "3", "--seed", "5"});
-  expectSameMap<3>(loadMap<3>(own("refined.gmap")), loadMap<3>(own("three.gmap")));
+  expectSameMap<3>(load(own("refined.gmap")), load(own("three.gmap")));
   succeed({"refine", own("three.gmap"), "-o", own("one.gmap"), "--budget", "1"});
-  expectSameMap<3>(loadMap<3>(own("one.gmap")), loadMap<3>(scene("map.gmap")));
+  expectSameMap<3>(load(own("one.gmap")), load(scene("map.gmap")));
 }
 
 TEST_F(Apps, GiveTheSameFileForAnyNumberOfThreads) {
@@ -136,7 +136,7 @@ TEST_F(Apps, TakePosesFromAFile) {
   std::vector<std::string> arguments = {"pcd2map", "-o", own("map.gmap"), "--budget", "1", "--poses", pose_file};
   arguments.insert(arguments.end(), bare.begin(), bare.end());
   succeed(arguments);
-  expectSameMap<3>(loadMap<3>(own("map.gmap")), loadMap<3>(scene("map.gmap")));
+  expectSameMap<3>(load(own("map.gmap")), load(scene("map.gmap")));
 
   // Without the poses: a map, but not without a word.
   arguments = {"pcd2map", "-o", own("wrong.gmap")};
@@ -155,7 +155,7 @@ TEST_F(Apps, LeaveOutFarPointsAndSaySo) {
   writePcd(path, {{1, 1, 1}, {2, 2, 2}, {30, 0, 0}, {0, 0, 0}, {nan, 0, 0}});
   const std::string text = succeed({"pcd2map", path, "-o", own("map.gmap"), "--max-range", "10"});
   EXPECT_NE(text.find("1 scan, 2 points (left out: 1 not finite, 1 at range 0, 1 too far)"), std::string::npos) << text;
-  EXPECT_EQ(loadMap<3>(own("map.gmap")).weight(2), 2.0);
+  EXPECT_EQ(load(own("map.gmap")).weight(2), 2.0);
 }
 
 TEST_F(Apps, WarnOfScansGivenTwice) {
@@ -177,8 +177,7 @@ TEST_F(Apps, PrintJsonWhateverTheNameOfAFile) {  // JSON must be UTF-8, file nam
 }
 
 TEST_F(Apps, PrintMetadataThatAreCalledLikeTheirOwn) {
-  saveMap<3>(loadMap<3>(scene("map.gmap")), own("map.gmap"),
-             {{"scales", "mine"}, {"history", "nonsense"}, {"n", "[1]"}});
+  save(own("map.gmap"), load(scene("map.gmap")), {{"scales", "mine"}, {"history", "nonsense"}, {"n", "[1]"}});
   const Json info = Json::parse(succeed({"info", own("map.gmap"), "--json"}));
   EXPECT_EQ(info["scales"].size(), 3u);
   EXPECT_EQ(info["metadata"]["scales"], "mine");

@@ -32,7 +32,7 @@ class MergeApp : public AppTest {
   static void TearDownTestSuite() { scene_.reset(); }
 
   static std::string scene(const std::string& name) { return (scene_->path() / name).string(); }
-  static GaussianMap<3> load(const std::string& path) { return loadMap<3>(path); }
+  static GaussianMap<3> load(const std::string& path) { return gaussmap::load(path); }
 
  private:
   static void build(std::vector<std::string> scans, const std::string& name,

@@ -44,7 +44,7 @@ class OnlineApp : public AppTest {
   }
   /// The same sums in the same cells; not the same occupancy.
   static bool sameFinest(const std::string& one, const std::string& other) {
-    const GaussianMapOctree a = loadMap<3>(one), b = loadMap<3>(other);
+    const GaussianMapOctree a = load(one), b = load(other);
     return a.scale(0).keys == b.scale(0).keys && a.scale(0).moments == b.scale(0).moments;
   }
 
@@ -91,7 +91,7 @@ TEST_F(OnlineApp, GivesBackWhatItHasForgotten) {
   const Json said =
       Json::parse(succeed({"restore", scene("map.gmap"), scene("removed.pcd"), "-o", own("whole.gmap"), "--json"}));
   EXPECT_TRUE(sameFinest(own("whole.gmap"), scene("keep.gmap")));
-  const GaussianMapOctree forgot = loadMap<3>(scene("map.gmap")), got = loadMap<3>(own("whole.gmap"));
+  const GaussianMapOctree forgot = load(scene("map.gmap")), got = load(own("whole.gmap"));
   for (std::size_t cell = 0; cell < got.cellCount(0); ++cell) {
     const auto kept = forgot.find(got.scale(0).keys[cell], 0);
     if (!kept || forgot.scale(0).moments[*kept] != got.scale(0).moments[cell])

@@ -62,7 +62,7 @@ class SegmentsApp : public AppTest {
 };
 
 TEST_F(SegmentsApp, MapTheFourWallsOfARoom) {
-  const SegmentMap map = readSegmentPcd(world("room.pcd"));
+  const SegmentMap map = loadSegmentsPcd(world("room.pcd"));
   ASSERT_EQ(map.segments.size(), 4u);
   EXPECT_NEAR(map.totalLength(), 28.0, 0.2);
   for (const Segment& segment : map.segments) {
@@ -83,7 +83,7 @@ TEST_F(SegmentsApp, WriteTheSameMapInEveryFormat) {
   EXPECT_EQ(linesOf(own("a.csv")), 5u);
   const Json features = Json::parse(contentsOf(own("a.geojson")))["features"];
   ASSERT_EQ(features.size(), 4u);
-  const SegmentMap map = readSegmentPcd(own("a.pcd"));
+  const SegmentMap map = loadSegmentsPcd(own("a.pcd"));
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(features[i]["geometry"]["coordinates"][0][0].get<double>(), map.segments[i].start.x());
     EXPECT_EQ(features[i]["geometry"]["coordinates"][1][1].get<double>(), map.segments[i].end.y());
@@ -139,11 +139,11 @@ TEST_F(SegmentsApp, ScoreTheScansThatAreNotInTheMap) {
   const Json finished = jsonOf({world("room.pcd"), "--evaluate", directory_.write("other.log", roomLog(7))});
   EXPECT_EQ(finished["held_out"]["beams"], 7 * 180);
   EXPECT_EQ(finished["held_out"]["cov5"], 1.0);
-  SegmentMap small = readSegmentPcd(world("room.pcd"));
+  SegmentMap small = loadSegmentsPcd(world("room.pcd"));
   for (Segment& segment : small.segments)
     for (Vector<2>* const point : {&segment.start, &segment.end})
       *point -= Vector<2>(std::copysign(0.3, point->x()), std::copysign(0.3, point->y()));
-  writeSegmentPcd(own("small.pcd"), small);
+  saveSegmentsPcd(own("small.pcd"), small);
   const Json wrong = jsonOf({own("small.pcd"), "--evaluate", own("other.log")});
   EXPECT_LT(wrong["held_out"]["cov10"].get<double>(), 0.05);
   EXPECT_GT(wrong["held_out"]["viol"].get<double>(), 0.95);
@@ -185,7 +185,7 @@ TEST_F(SegmentsApp, ReadLogsAndPcdScansAlike) {
   }
   succeed({"segments", own("scans"), "-o", own("pcd.pcd")});
   succeed({"segments", directory_.write("room.log", roomLog(12)), "-o", own("log.pcd")});
-  const SegmentMap a = readSegmentPcd(own("pcd.pcd")), b = readSegmentPcd(own("log.pcd"));
+  const SegmentMap a = loadSegmentsPcd(own("pcd.pcd")), b = loadSegmentsPcd(own("log.pcd"));
   ASSERT_EQ(a.segments.size(), b.segments.size());
   for (std::size_t i = 0; i < a.segments.size(); ++i) {
     EXPECT_NEAR((a.segments[i].start - b.segments[i].start).norm(), 0.0, 1e-3);
@@ -199,7 +199,7 @@ TEST_F(SegmentsApp, SliceThreeDimensionalScans) {
   // The corner: walls of 20 m and 12 m along the floor and a pole; above the floor, below the tops.
   succeed({"segments", own("corner/scans"), "-o", own("walls.pcd"), "--slice", "0.5", "3.5"});
   double longest = 0.0;
-  for (const Segment& segment : readSegmentPcd(own("walls.pcd")).segments)
+  for (const Segment& segment : loadSegmentsPcd(own("walls.pcd")).segments)
     longest = std::max(longest, segment.length());
   EXPECT_GT(longest, 8.0);
   EXPECT_LT(longest, 20.2);
@@ -214,7 +214,7 @@ TEST_F(SegmentsApp, KeepWhatComesBeforeTheDamageOfALog) {
   EXPECT_EQ(half.code, 0);
   EXPECT_NE(half.err.find("half.log.gz: line "), std::string::npos) << half.err;
   EXPECT_NE(half.err.find("cut off"), std::string::npos) << half.err;
-  EXPECT_EQ(readSegmentPcd(own("half.pcd")).segments.size(), 4u);
+  EXPECT_EQ(loadSegmentsPcd(own("half.pcd")).segments.size(), 4u);
 
   const std::string bad = "FLASER 3 1 2\nFLASER 2 1 2 nan 0 0\n";
   const Outcome damaged = runApp({"segments", directory_.write("bad.log", bad + roomLog(30)), "-o", own("bad.pcd")});
@@ -250,7 +250,7 @@ TEST_F(SegmentsApp, MapOneBeamAndBeamsOfOneRange) {
   std::string circle = "FLASER 360";
   for (int i = 0; i < 360; ++i) circle += " 3";
   succeed({"segments", directory_.write("circle.log", circle + " 0 0 0\n"), "-o", own("circle.pcd")});
-  for (const Segment& segment : readSegmentPcd(own("circle.pcd")).segments)
+  for (const Segment& segment : loadSegmentsPcd(own("circle.pcd")).segments)
     for (const Vector<2>& point : {segment.start, segment.end}) EXPECT_NEAR(point.norm(), 3.0, 0.2);
   // A number of equal scans changes nothing about that.
   std::string many;

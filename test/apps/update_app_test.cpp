@@ -26,7 +26,7 @@ TEST_F(UpdateApp, AddsScansAsIfAllHadBeenThereAtOnce) {
   EXPECT_NE(text.find(" added, Gaussians per scale "), std::string::npos) << text;
   EXPECT_NE(text.find(" tiles written, "), std::string::npos) << text;
   const Json said = Json::parse(succeed({"pcd2map", "--update", map, scan(4), "--json"}));
-  EXPECT_TRUE(sameMap<3>(loadMap<3>(map), loadMap<3>(all)));
+  EXPECT_TRUE(sameMap<3>(load(map), load(all)));
   const Json info = infoOf(map);
   for (std::size_t s = 0; s < 3; ++s) {
     EXPECT_EQ(said["scales"][s]["cells"], info["scales"][s]["cells"]);

@@ -106,8 +106,8 @@ TEST_F(Apps, KeepExistingOutputsUnlessForced) {
   succeed({"refine", scene("map.gmap"), "-o", map, "--force"});
   succeed({"export", scene("map.gmap"), cloud, "--force"});
   succeed({"simulate", "-o", own("sim"), "--columns", "10", "--force"});
-  EXPECT_NO_THROW(loadMap<3>(map));
-  EXPECT_NO_THROW(loadMapPcd(cloud));
+  EXPECT_NO_THROW(load(map));
+  EXPECT_NO_THROW(loadPcd(cloud));
 }
 
 TEST_F(Apps, NeverWriteOverAnInput) {

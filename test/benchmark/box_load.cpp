@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "clock.h"
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "gaussmap/io/gmap/map_reader.h"
 #include "subcommands.h"
 
@@ -18,7 +18,7 @@ namespace {
 
 void loadBoxes(const std::string& path, double side) {
   double start = wallSeconds();
-  const GaussianMap<3> whole = loadMap<3>(path);
+  const GaussianMap<3> whole = load(path);
   const double all = wallSeconds() - start;
   Random random(1);
   std::vector<double> seconds;

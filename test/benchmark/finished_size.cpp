@@ -13,7 +13,7 @@
 #include <memory>
 #include <numeric>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "gaussmap/core/scans.h"
 #include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
@@ -48,7 +48,7 @@ class Octree {
       octomap::Pointcloud cloud;
       for (const Eigen::Vector3d& point : scan.points) {
         if (!isReturn(point)) continue;
-        const Eigen::Vector3f p = (scan.pose.rotation * point + scan.pose.translation).cast<float>();
+        const Eigen::Vector3f p = (scan.pose * point).cast<float>();
         cloud.push_back(p.x(), p.y(), p.z());
         if (!rays) tree_.updateNode(octomap::point3d(p.x(), p.y(), p.z()), true, true);
       }
@@ -120,8 +120,8 @@ void compareSizes(const fs::path& folder) {
   std::string work = (fs::temp_directory_path() / "gaussmap-finished-XXXXXX").string();
   if (::mkdtemp(work.data()) == nullptr) throw std::runtime_error("no temporary directory");
   const fs::path path = fs::path(work) / "map.gmap";
-  saveMap<3>(finish<3>(map, 1), path, {}, {true, 15, 0, Precision::Finished});
-  const GaussianMap<3> finished = loadMap<3>(path);
+  save(path, finish<3>(map, 1), {}, {true, 15, 0, Precision::Finished});
+  const GaussianMap<3> finished = load(path);
   SampleOptions sampling;
   sampling.samples = kSamples;
   sampling.at_least = 1;

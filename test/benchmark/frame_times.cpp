@@ -49,7 +49,7 @@ std::string driverOf(vtkRenderWindow& window) {
 
 void measureFrames(const std::string& path) {
   Viewer::Parts parts;
-  parts.scene.map = loadMap<3>(path);
+  parts.scene.map = load(path);
   const GaussianMap<3> map = *parts.map();
   parts.origin = middleOf(map);
   for (int scale = scaleToShow(map); scale < map.scales(); ++scale) {

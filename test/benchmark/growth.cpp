@@ -2,7 +2,7 @@
 #include <Eigen/QR>
 #include <cstdio>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "gaussmap/map/moment_grid.h"
 #include "gaussmap/mapping/build.h"
 #include "measure.h"

@@ -48,7 +48,7 @@ double octomapWithRays(const std::vector<Scan>& scans, double resolution) {
     octomap::Pointcloud cloud;
     for (const Eigen::Vector3d& point : scan.points) {
       if (!isReturn(point)) continue;
-      const Eigen::Vector3f in_map = (scan.pose.rotation * point + scan.pose.translation).cast<float>();
+      const Eigen::Vector3f in_map = (scan.pose * point).cast<float>();
       cloud.push_back(in_map.x(), in_map.y(), in_map.z());
     }
     const Eigen::Vector3f origin = scan.pose.translation.cast<float>();

@@ -66,7 +66,7 @@ void clean(const Sequence& sequence, double resolution) {
   options.resolution = resolution;
   options.evidence.threads = 1;
   const double start = wallSeconds();
-  const MovingPoints moving(sequence.sources, options);
+  const MovingPoints moving(std::make_shared<const PcdScans>(sequence.sources), options);
   const double seconds = wallSeconds() - start;
   std::vector<std::vector<bool>> flags;
   for (std::size_t s = 0; s < sequence.scans.size(); ++s) flags.push_back(moving.inScan(s));

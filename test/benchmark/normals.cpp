@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap_benchmark normals [DIR or PCD...] [--json FILE]: GaussianMapNormalEstimation beside pcl::NormalEstimationOMP
+// gaussmap_benchmark normals [DIR or PCD...] [--json FILE]: CellNormalEstimation beside pcl::NormalEstimationOMP
 // (20 neighbours): times with one and two threads, and the angle between their normals. Of the simulated street the
 // angles to the true normals too.
 #include <pcl/features/normal_3d_omp.h>
@@ -48,7 +48,7 @@ Angles anglesOf(const Normals& normals, const NormalAt& expected) {
 void compare(const NamedCloud& input, int runs, Table& table) {
   for (const int threads : {1, 2}) {
     pcl::NormalEstimationOMP<pcl::PointXYZ, pcl::Normal> theirs(static_cast<unsigned>(threads));
-    GaussianMapNormalEstimation<pcl::PointXYZ> ours;
+    CellNormalEstimation<pcl::PointXYZ> ours;
     ours.setNumberOfThreads(threads);
     theirs.setKSearch(kNeighbours);
     ours.setKSearch(kNeighbours);
@@ -120,9 +120,9 @@ void compareWithTruth(Table& table) {
                                    "degrees", angles.median, 0.0});
   };
   pcl::NormalEstimationOMP<pcl::PointXYZ, pcl::Normal> theirs(1);
-  GaussianMapNormalEstimation<pcl::PointXYZ> ours;
+  CellNormalEstimation<pcl::PointXYZ> ours;
   row("pcl::NormalEstimationOMP", theirs);
-  row("GaussianMapNormalEstimation", ours);
+  row("CellNormalEstimation", ours);
 }
 
 }  // namespace
@@ -134,7 +134,7 @@ void addNormals(CLI::App& app) {
     int runs = 5;
   };
   const auto given = std::make_shared<Given>();
-  CLI::App& command = *app.add_subcommand("normals", "GaussianMapNormalEstimation beside pcl::NormalEstimationOMP");
+  CLI::App& command = *app.add_subcommand("normals", "CellNormalEstimation beside pcl::NormalEstimationOMP");
   command.add_option("clouds", given->paths, "PCD files, or directories of which the first scan counts");
   command.add_option("--runs", given->runs, "of which the fastest counts")->check(CLI::Range(1, 100));
   command.add_option("--json", given->json, "file for machines");

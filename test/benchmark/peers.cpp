@@ -10,7 +10,7 @@
 
 #include "gaussmap/io/pcd/pcd_reader.h"
 #include "gaussmap/io/scans/pcd_scans.h"
-#include "gaussmap/mapping/accumulate_scans.h"
+#include "gaussmap/mapping/build.h"
 #include "parts.h"
 #include "street_points.h"
 #include "subcommands.h"

@@ -13,14 +13,14 @@
 #include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
 #include "gaussmap/io/scans/pcd_scans.h"
-#include "gaussmap/mapping/accumulate_scans.h"
+#include "gaussmap/mapping/build.h"
 #include "subcommands.h"
 
 namespace gaussmap::benchmark {
 namespace {
 
 void compareWithReference(const std::string& map_file, const std::string& folder, ScanFrame frame) {
-  const GaussianMapOctree map = loadMap<3>(map_file);
+  const GaussianMapOctree map = load(map_file);
   std::vector<PcdScan> scans;
   for (const auto& path : listScans({folder})) scans.push_back({path, normalised(PcdReader(path).header().viewpoint)});
   AccumulateOptions options;

@@ -3,7 +3,7 @@
 
 #include "gaussmap/io/pcd/pcd_reader.h"
 #include "gaussmap/io/scans/pcd_scans.h"
-#include "gaussmap/mapping/accumulate_scans.h"
+#include "gaussmap/mapping/build.h"
 #include "points/nearest_distances.h"
 
 namespace gaussmap::refinement {
@@ -58,8 +58,7 @@ LoadedData simulatedDrive(const Simulation& simulation, std::uint64_t seed) {
   data.mesh = simulation.world.mesh();
   for (std::size_t i = 0; i < simulation.trajectory.size(); ++i) {
     const SimulatedScan scan = simulateScan(simulation, i, seed);
-    for (const Vector<3>& point : scan.points)
-      data.points.push_back(scan.pose.rotation * point + scan.pose.translation);
+    for (const Vector<3>& point : scan.points) data.points.push_back(scan.pose * point);
     data.hits.insert(data.hits.end(), scan.truth.begin(), scan.truth.end());
   }
   return data;

@@ -84,7 +84,7 @@ void checkScalar(const std::vector<CellData>& cells) {
   AgglomerateOptions options;
   options.cost = MergeCost::Runnalls;
   for (const CellData& cell : cells) {
-    if (cell.gaussians.size() > options.most_exact) continue;
+    if (cell.gaussians.size() > options.max_exact) continue;
     const auto sum = [](const Dendrogram& dendrogram) {
       double costs = 0.0;
       for (const Dendrogram::Merge& merge : dendrogram.merges) costs += merge.cost;

@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "gaussmap/core/scans.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
 #include "gaussmap/io/scans/pcd_scans.h"

@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 
 namespace gaussmap::benchmark {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "gaussmap/io/logs/carmen_log.h"
-#include "gaussmap/segments/planar_scan.h"
+#include "gaussmap/segments/laser_scan.h"
 #include "gaussmap/segments/segment_map.h"
 #include "simulation/simulation.h"
 

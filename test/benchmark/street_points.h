@@ -35,8 +35,7 @@ inline std::vector<Vector<3>> streetPoints(std::size_t count, std::uint64_t firs
   for (std::uint64_t step = first_scan; points.size() < count; ++step) {
     Pose pose = turn;
     pose.translation = turn.rotation * Eigen::Vector3d(-80.0 + 2.0 * static_cast<double>(step % 80), 0.3, 1.8);
-    for (const Eigen::Vector3d& point : simulateScan(world, pose, lidar, step).points)
-      points.push_back(pose.rotation * point + pose.translation);
+    for (const Eigen::Vector3d& point : simulateScan(world, pose, lidar, step).points) points.push_back(pose * point);
   }
   points.resize(count);
   return points;

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "gaussmap/io/pcd/pcd_writer.h"
 #include "street_points.h"
 #include "subcommands.h"

@@ -235,9 +235,9 @@ TEST(Agglomerate, MergesDuplicatesFirst) {
   const std::vector<Gaussian<3>> different = randomGaussians<3>(random, 12);
   std::vector<Gaussian<3>> data;
   for (int copy = 0; copy < 5; ++copy) data.insert(data.end(), different.begin(), different.end());
-  for (std::size_t most_exact : {std::size_t{1000}, std::size_t{0}}) {
+  for (std::size_t max_exact : {std::size_t{1000}, std::size_t{0}}) {
     AgglomerateOptions options = with(MergeCost::Runnalls);  // a cost that is 0 for duplicates, positive for all others
-    options.most_exact = most_exact;
+    options.max_exact = max_exact;
     options.restricted_until = 12;
     const std::vector<int> found = labels(agglomerate(data, ones(60), options), 12);
     for (std::size_t j = 0; j < 60; ++j) EXPECT_EQ(found[j], static_cast<int>(j % 12));
@@ -321,7 +321,7 @@ TEST(Agglomerate, IsExactWhenEveryoneIsANeighbour) {
     const std::vector<double> areas = randomAreas(random, 120);
     AgglomerateOptions options = with(cost);
     const Dendrogram exact = agglomerate(data, areas, options);
-    options.most_exact = 0;
+    options.max_exact = 0;
     options.neighbours = 120;
     for (const std::size_t until : {1u, 30u, 200u}) {
       options.restricted_until = until;
@@ -339,10 +339,10 @@ TEST(Agglomerate, LosesLittleWithFewNeighbours) {
     data.insert(data.end(), more.begin(), more.end());
   }
   for (Gaussian<3>& datum : data) datum.cov += 0.0025 * Matrix<3>::Identity();
-  ASSERT_GT(data.size(), AgglomerateOptions().most_exact);
-  const auto volumeAt = [&](std::size_t k, std::size_t most_exact) {
+  ASSERT_GT(data.size(), AgglomerateOptions().max_exact);
+  const auto volumeAt = [&](std::size_t k, std::size_t max_exact) {
     AgglomerateOptions options;
-    options.most_exact = most_exact;
+    options.max_exact = max_exact;
     const std::vector<int> found = labels(agglomerate(data, ones(data.size()), options), k);
     std::vector<std::vector<Gaussian<3>>> parts(k);
     for (std::size_t j = 0; j < data.size(); ++j) {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "clustering/random_gaussians.h"
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 
 namespace gaussmap {
 using namespace detail;

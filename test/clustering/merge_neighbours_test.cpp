@@ -111,7 +111,7 @@ TEST(Agglomerate, BreaksTiesAsBruteForceDoes) {  // a lattice of equal Gaussians
       // Everyone is a neighbour, whatever is looked for anew: every pair is a candidate all the time.
       const Dendrogram expected = bruteForce(MergeHistory<2>(data, areas, cost), data.size(), 1);
       expectSame(agglomerate(data, areas, options), expected);
-      options.most_exact = 0;
+      options.max_exact = 0;
       options.neighbours = data.size();
       options.restricted_until = 1;
       expectSame(agglomerate(data, areas, options), expected);

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 
 namespace gaussmap {
 using namespace detail;

@@ -6,10 +6,10 @@
 #include <limits>
 
 #include "gaussmap/core/error.h"
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "gaussmap/io/pcd/pcd_writer.h"
 #include "gaussmap/io/scans/pcd_scans.h"
-#include "gaussmap/mapping/accumulate_scans.h"
+#include "gaussmap/mapping/build.h"
 #include "gaussmap/mapping/online/online_mapper.h"
 #include "gaussmap/sensor/projection.h"
 #include "io/files/temporary_directory.h"
@@ -44,7 +44,7 @@ TEST(ReadScan, MovesPointsOfTheMapIntoTheSensorsFrame) {
   const Pose pose = somePose();
   const std::vector<Vector<3>> in_sensor = test::randomCloud<3>(600, 2);
   std::vector<Vector<3>> in_map;
-  for (const Vector<3>& point : in_sensor) in_map.push_back(pose.rotation * point + pose.translation);
+  for (const Vector<3>& point : in_sensor) in_map.push_back(pose * point);
   in_map.push_back(pose.translation);  // the sensor's own place
   const auto path = directory.path() / "scan.pcd";
   writePcd(path, in_map, PcdPrecision::Double);
@@ -141,7 +141,7 @@ TEST(PointFilter, CountsAPointAtTheSensorAlikeInAllFramesAndModes) {
   Pose pose = somePose();
   const std::vector<Eigen::Vector3d> in_sensor = {{0, 0, 0}, {1, 2, 3}, {30, 0, 0}};
   std::vector<Eigen::Vector3d> in_map;
-  for (const Eigen::Vector3d& point : in_sensor) in_map.push_back(pose.rotation * point + pose.translation);
+  for (const Eigen::Vector3d& point : in_sensor) in_map.push_back(pose * point);
   for (const ScanFrame frame : {ScanFrame::Sensor, ScanFrame::Map}) {
     const MemoryScans scans({{frame == ScanFrame::Map ? in_map : in_sensor, pose}}, frame);
     const PointCounts at_once = accumulateScans(scans, {0.1, 10.0}).counts;

@@ -67,8 +67,7 @@ TEST(MergeMaps, GivesTheMapOfAllScansForAnyDealOfSimulatedScans) {
   for (std::size_t i = 0; i < 8; ++i) {
     const SimulatedScan scan = simulateScan(simulation, i);
     scans.emplace_back();
-    for (const Eigen::Vector3d& point : scan.points)
-      scans.back().push_back(scan.pose.rotation * point + scan.pose.translation);
+    for (const Eigen::Vector3d& point : scan.points) scans.back().push_back(scan.pose * point);
   }
   MapOptions grid;
   const auto mapOf = [&](const std::vector<std::size_t>& chosen) {

@@ -8,7 +8,7 @@
 
 #include "editing/thinned_map.h"
 #include "gaussmap/editing/transform_map.h"
-#include "gaussmap/io/gmap/map_history.h"
+#include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/map/queries.h"
 #include "io/gmap/map_equality.h"
 #include "map/inherit_occupancy.h"

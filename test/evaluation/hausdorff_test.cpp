@@ -9,7 +9,7 @@
 #include <limits>
 #include <string>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "gaussmap/mapping/build.h"
 #include "points/nearest_distances.h"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "gaussmap/map/queries.h"
 #include "gaussmap/mapping/build.h"
 

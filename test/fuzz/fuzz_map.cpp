@@ -7,7 +7,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace gaussmap;
   const auto path = fuzz::asFile("map.gmap", data, size);
-  fuzz::refusesOrReads([&] { loadMap<3>(path); });
+  fuzz::refusesOrReads([&] { load(path); });
   fuzz::refusesOrReads([&] { loadMetadata(path); });
   fuzz::refusesOrReads([&] { mapFileSize(path); });
   fuzz::refusesOrReads([&] {

@@ -7,7 +7,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace gaussmap;
   const auto path = fuzz::asFile("map.pcd", data, size);
-  fuzz::refusesOrReads([&] { loadMapPcd(path); });
-  fuzz::refusesOrReads([&] { readSegmentPcd(path); });
+  fuzz::refusesOrReads([&] { loadPcd(path); });
+  fuzz::refusesOrReads([&] { loadSegmentsPcd(path); });
   return 0;
 }

@@ -9,7 +9,7 @@
 namespace gaussmap {
 namespace {
 
-constexpr std::int64_t kMost = CellMoments<3>::kMostPoints;
+constexpr std::int64_t kMost = CellMoments<3>::kMaxPoints;
 
 /// So many points at the corner of a cell, where products are largest.
 CellMoments<3> corner(std::int64_t count) {

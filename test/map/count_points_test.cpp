@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 
 namespace gaussmap {
 namespace {

@@ -8,7 +8,6 @@
 #include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/io/pcd/pcd_writer.h"
 #include "gaussmap/io/scans/pcd_scans.h"
-#include "gaussmap/mapping/accumulate_scans.h"
 #include "gaussmap/mapping/build.h"
 #include "gaussmap/mapping/online/online_mapper.h"
 #include "gaussmap/mapping/refine.h"
@@ -81,9 +80,9 @@ TEST(FarFromTheOrigin, AMapOfScansIsTheSameThroughAllOfItsLife) {
     SaveOptions saving;
     saving.overwrite = true;
     saving.precision = precision;
-    saveMap<3>(here, directory.path() / "here.gmap", {}, saving);
-    saveMap<3>(there, directory.path() / "there.gmap", {}, saving);
-    expectShifted(loadMap<3>(directory.path() / "here.gmap"), loadMap<3>(directory.path() / "there.gmap"));
+    save(directory.path() / "here.gmap", here, {}, saving);
+    save(directory.path() / "there.gmap", there, {}, saving);
+    expectShifted(load(directory.path() / "here.gmap"), load(directory.path() / "there.gmap"));
   }
 }
 

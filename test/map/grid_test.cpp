@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 
 namespace gaussmap {
 namespace {

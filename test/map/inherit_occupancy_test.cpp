@@ -62,18 +62,18 @@ TEST(Occupancy, IsKnownToAllScalesOrNone) {
 TEST(Occupancy, SurvivesTheMapFileBitByBit) {
   const TemporaryDirectory directory;
   const GaussianMapOctree map = asked(randomMap(3));
-  saveMap<3>(map, directory.path() / "map.gmap");
-  expectSameMap<3>(loadMap<3>(directory.path() / "map.gmap"), map);
+  save(directory.path() / "map.gmap", map);
+  expectSameMap<3>(load(directory.path() / "map.gmap"), map);
 }
 
 TEST(Occupancy, SurvivesThePcdFile) {
   const TemporaryDirectory directory;
   const GaussianMapOctree map = asked(randomMap(4)), plain = randomMap(4);
-  saveMapPcd(map, directory.path() / "map.pcd");
-  saveMapPcd(plain, directory.path() / "plain.pcd");
-  const GaussianMapOctree got = loadMapPcd(directory.path() / "map.pcd");
+  savePcd(directory.path() / "map.pcd", map);
+  savePcd(directory.path() / "plain.pcd", plain);
+  const GaussianMapOctree got = loadPcd(directory.path() / "map.pcd");
   for (int s = 0; s < 3; ++s) EXPECT_EQ(got.scale(s).log_odds, map.scale(s).log_odds);
-  EXPECT_FALSE(loadMapPcd(directory.path() / "plain.pcd").hasOccupancy());
+  EXPECT_FALSE(loadPcd(directory.path() / "plain.pcd").hasOccupancy());
 }
 
 TEST(Occupancy, OfACoarseGaussianIsTheHighestUnderIt) {

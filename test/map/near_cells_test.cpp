@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "gaussmap/mapping/build.h"
 
 namespace gaussmap {

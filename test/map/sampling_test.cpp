@@ -9,7 +9,7 @@
 #include <limits>
 #include <numeric>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "gaussmap/editing/compress.h"
 #include "gaussmap/mapping/build.h"
 #include "gaussmap/mapping/refine.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/mapping/accumulate_scans.h"
 #include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/mapping/build.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "gaussmap/evaluation/hausdorff.h"
-#include "gaussmap/io/gmap/map_history.h"
+#include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/map/sampling.h"
 #include "gaussmap/mapping/build.h"
 #include "io/files/temporary_directory.h"
@@ -238,7 +238,7 @@ TEST(SavedSize, IsTheSizeOfTheFile) {
   const test::TemporaryDirectory folder;
   const std::filesystem::path path = folder.path() / "map.gmap";
   const GaussianMapOctree map = refine<3>(cloudMap(58)).map;
-  saveMap<3>(map, path, {{"note", "x"}}, {true});
+  save(path, map, {{"note", "x"}}, {true});
   EXPECT_EQ(std::filesystem::file_size(path), savedSize<3>(map, {{"note", "x"}}));
 }
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "mesh/mesh_tree.h"
 
 // Meshes for tests, and the same questions answered without a tree and in another way.

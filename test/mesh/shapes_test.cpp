@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "mesh/mesh_measures.h"
 #include "mesh/mesh_tree.h"
 

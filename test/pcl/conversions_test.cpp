@@ -32,7 +32,7 @@ TEST(PointGaussian, ComesOutOfAnExportedFileThroughPcl) {
   const test::TemporaryDirectory folder;
   const GaussianMapOctree map = refinedMap();
   const std::string path = (folder.path() / "map.pcd").string();
-  saveMapPcd(map, path);
+  savePcd(path, map);
   pcl::PointCloud<PointGaussian> read;
   ASSERT_EQ(pcl::io::loadPCDFile(path, read), 0);
   const pcl::PointCloud<PointGaussian> expected = toPointCloud(map);
@@ -58,7 +58,7 @@ TEST(PointGaussian, WrittenByPclIsReadAsAMap) {
     const std::string path = (folder.path() / (compressed ? "compressed.pcd" : "binary.pcd")).string();
     compressed ? pcl::io::savePCDFileBinaryCompressed(path, toPointCloud(map))
                : pcl::io::savePCDFileBinary(path, toPointCloud(map));
-    const GaussianMapOctree read = loadAnyMap(path);
+    const GaussianMapOctree read = loadAny(path);
     for (int s = 0; s < map.scales(); ++s) {
       EXPECT_EQ(read.scale(s).keys, map.scale(s).keys);
       EXPECT_EQ(read.gaussianCount(s), map.gaussianCount(s));

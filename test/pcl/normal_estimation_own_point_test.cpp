@@ -9,11 +9,11 @@
 namespace gaussmap {
 namespace {
 
-TEST(GaussianMapNormalEstimation, TakesAUsersOwnPointType) {
+TEST(CellNormalEstimation, TakesAUsersOwnPointType) {
   const auto cloud = test::wavyFloor<RingPoint>();
   const auto plain = test::wavyFloor<pcl::PointXYZ>();
-  GaussianMapNormalEstimation<RingPoint> own;
-  GaussianMapNormalEstimation<pcl::PointXYZ> usual;
+  CellNormalEstimation<RingPoint> own;
+  CellNormalEstimation<pcl::PointXYZ> usual;
   own.setInputCloud(cloud);
   usual.setInputCloud(plain);
   pcl::PointCloud<pcl::Normal> normals, expected;

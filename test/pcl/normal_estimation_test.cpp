@@ -26,7 +26,7 @@ TYPED_TEST_SUITE(NormalEstimationTwin, PointTypes, );
 template <typename PointT, typename SetUp>
 std::pair<pcl::PointCloud<pcl::Normal>, pcl::PointCloud<pcl::Normal>> both(const SetUp& set_up) {
   pcl::NormalEstimation<PointT, pcl::Normal> twin;
-  GaussianMapNormalEstimation<PointT> ours;
+  CellNormalEstimation<PointT> ours;
   std::pair<pcl::PointCloud<pcl::Normal>, pcl::PointCloud<pcl::Normal>> result;
   twin.setKSearch(20);
   ours.setKSearch(20);
@@ -97,10 +97,10 @@ TYPED_TEST(NormalEstimationTwin, TakesIndicesSurfaceAndViewpointAsPclDoes) {
   EXPECT_LT(medianDegrees(their_few, our_few), 5.0);
 }
 
-TEST(GaussianMapNormalEstimation, TellsItsViewpointAsPclDoes) {
+TEST(CellNormalEstimation, TellsItsViewpointAsPclDoes) {
   const auto cloud = wavyFloor<pcl::PointXYZ>();
   pcl::NormalEstimation<pcl::PointXYZ, pcl::Normal> twin;
-  GaussianMapNormalEstimation<pcl::PointXYZ> ours;
+  CellNormalEstimation<pcl::PointXYZ> ours;
   const auto expectSame = [&] {
     Eigen::Vector3f a, b;
     twin.getViewPoint(a.x(), a.y(), a.z());
@@ -119,9 +119,9 @@ TEST(GaussianMapNormalEstimation, TellsItsViewpointAsPclDoes) {
   each([&](auto& e) { e.useSensorOriginAsViewPoint(); });
 }
 
-TEST(GaussianMapNormalEstimation, WritesIntoPointsThatHaveNormals) {
+TEST(CellNormalEstimation, WritesIntoPointsThatHaveNormals) {
   const auto cloud = wavyFloor<pcl::PointXYZ>();
-  GaussianMapNormalEstimation<pcl::PointXYZ, pcl::PointNormal> ours;
+  CellNormalEstimation<pcl::PointXYZ, pcl::PointNormal> ours;
   ours.setInputCloud(cloud);
   pcl::PointCloud<pcl::PointNormal> output;
   ours.compute(output);
@@ -130,8 +130,8 @@ TEST(GaussianMapNormalEstimation, WritesIntoPointsThatHaveNormals) {
   EXPECT_EQ(output[600].x, 0.0f);
 }
 
-TEST(GaussianMapNormalEstimation, GivesNothingForNothingAndNanForTooLittle) {
-  GaussianMapNormalEstimation<pcl::PointXYZ> ours;
+TEST(CellNormalEstimation, GivesNothingForNothingAndNanForTooLittle) {
+  CellNormalEstimation<pcl::PointXYZ> ours;
   pcl::PointCloud<pcl::Normal> output(3, 1);
   ours.compute(output);
   EXPECT_TRUE(output.empty());

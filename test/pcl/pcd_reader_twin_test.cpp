@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
 #include "io/files/temporary_directory.h"
 

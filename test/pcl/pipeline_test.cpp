@@ -22,7 +22,7 @@ pcl::PointCloud<pcl::Normal>::Ptr prepare(const Cloud::Ptr& scan,
   thin.setMaxError(0.2);  // 95 % of the scan within 20 cm of a kept point
   thin.setInputCloud(scan);
   thin.filter(*scan);
-  gaussmap::GaussianMapNormalEstimation<pcl::PointXYZI> normals;
+  gaussmap::CellNormalEstimation<pcl::PointXYZI> normals;
   normals.setInputCloud(scan);
   auto result = pcl::make_shared<pcl::PointCloud<pcl::Normal>>();
   normals.compute(*result);

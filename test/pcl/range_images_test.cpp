@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/pcl/range_images.h"
+#include "gaussmap/pcl/conversions.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <pcl/pcl_macros.h>
 #include <pcl/register_point_struct.h>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "gaussmap/pcl/registration.h"
 
 #pragma GCC diagnostic push

@@ -242,7 +242,7 @@ TEST(GaussianMapRegistration, AlignsWithAMapThatWasMadeBefore) {
   const auto map = by_cloud.getTargetMap();
   test::TemporaryDirectory directory;
   const auto path = directory.path() / "hall.gmap";
-  saveMap(*map, path);
+  save(path, *map);
   ASSERT_TRUE(by_map.setTargetMap(map));
   ASSERT_TRUE(by_file.setTargetMap(path));
   pcl::PointCloud<pcl::PointXYZ> output;
@@ -367,7 +367,7 @@ TEST(ReadmeExample, LocalisesAScanAgainstASavedMap) {
   const auto path = directory.path() / "hall.gmap";
   GaussianMapRegistration<pcl::PointXYZ, pcl::PointXYZ> maker;
   maker.setInputTarget(cloudOf<pcl::PointXYZ>(hall().target));
-  saveMap(*maker.getTargetMap(), path);
+  save(path, *maker.getTargetMap());
   const auto found = localise(path.string(), cloudOf<pcl::PointXYZ>(hall().source), Eigen::Matrix4f::Identity());
   ASSERT_TRUE(found);
   expectNear(*found, hall().truth);

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "gaussmap/core/gaussian.h"
-#include "gaussmap/core/random.h"
 
 namespace gaussmap::test {
 

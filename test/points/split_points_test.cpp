@@ -9,7 +9,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "points/nearest_distances.h"
 
 namespace gaussmap {
@@ -43,7 +43,7 @@ TEST(SplitPoints, PartsFourHeapsAsFourHeaps) {
     for (const double y : {0.0, 10.0})
       for (const double d : {-0.1, 0.0, 0.1}) points.emplace_back(x + d, y, 0);
   SplitPointsOptions options;
-  options.most_parts = 4;
+  options.max_parts = 4;
   const PointParts parts = splitPoints(points, options);
   ASSERT_EQ(parts.gaussians.size(), 4u);
   EXPECT_EQ(parts.labels, (std::vector<std::uint32_t>{0, 0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 3}));
@@ -58,7 +58,7 @@ TEST(SplitPoints, GivesEveryPointToOnePartAndMatchesItsMoments) {
   const Points points = floorAndBall(1500);
   for (const SplitRule rule : {SplitRule::Distance, SplitRule::Shape}) {
     SplitPointsOptions options;
-    options.most_parts = 100;
+    options.max_parts = 100;
     options.rule = rule;
     const PointParts parts = splitPoints(points, options);
     ASSERT_EQ(parts.labels.size(), points.size());
@@ -84,7 +84,7 @@ TEST(SplitPoints, GivesEveryPointToOnePartAndMatchesItsMoments) {
 TEST(SplitPoints, MovesPointsToTheNearestMean) {
   const Points points = floorAndBall(2000);
   SplitPointsOptions options;
-  options.most_parts = 60;
+  options.max_parts = 60;
   options.rounds = 200;  // until nothing moves
   const PointParts parts = splitPoints(points, options);
   const std::vector<double> nearest = nearestDistances(points, means(parts));
@@ -109,7 +109,7 @@ TEST(SplitPoints, HoldTheErrorWithFewParts) {
       EXPECT_LE(distances[distances.size() * 95 / 100 - 1], error);
       options.max_error = 0.0;
       options.rounds = 0;
-      options.most_parts = parts.gaussians.size() * 9 / 10;
+      options.max_parts = parts.gaussians.size() * 9 / 10;
       EXPECT_GT(splitPoints(points, options).error, error);  // a tenth fewer would not do
     }
 }
@@ -117,7 +117,7 @@ TEST(SplitPoints, HoldTheErrorWithFewParts) {
 TEST(SplitPoints, KeepsTheBudgetWhereTheErrorAsksForMore) {
   SplitPointsOptions options;
   options.max_error = 1e-6;
-  options.most_parts = 50;
+  options.max_parts = 50;
   const PointParts parts = splitPoints(floorAndBall(500), options);
   EXPECT_LE(parts.gaussians.size(), 50u);
   EXPECT_GT(parts.error, 1e-6);
@@ -127,7 +127,7 @@ TEST(SplitPoints, ByShapeSpendsPartsWhereTheSurfaceBends) {
   const Points points = floorAndBall(2000);
   const auto onFloor = [&](SplitRule rule) {
     SplitPointsOptions options;
-    options.most_parts = 200;
+    options.max_parts = 200;
     options.rule = rule;
     std::size_t floor = 0;
     for (const Gaussian<3>& gaussian : splitPoints(points, options).gaussians) floor += gaussian.mean.z() < 1e-6;
@@ -140,7 +140,7 @@ TEST(SplitPoints, ByShapeSpendsPartsWhereTheSurfaceBends) {
 TEST(SplitPoints, DoesNotDependOnThreads) {
   const Points points = floorAndBall(6000);
   SplitPointsOptions options;
-  options.most_parts = 300;
+  options.max_parts = 300;
   options.threads = 1;
   const PointParts one = splitPoints(points, options);
   options.threads = 2;
@@ -171,7 +171,7 @@ TEST(SplitPoints, PartsFarPointsAsNearOnes) {
     far.push_back(near.back() + Vector<3>(1e7, -1e7, 1e7));
   }
   SplitPointsOptions options;
-  options.most_parts = 40;
+  options.max_parts = 40;
   options.rounds = 0;
   EXPECT_NEAR(splitPoints(far, options).error, splitPoints(near, options).error, 1e-6);
 }
@@ -179,7 +179,7 @@ TEST(SplitPoints, PartsFarPointsAsNearOnes) {
 TEST(SplitPoints, NamesWhatItCannotTake) {
   EXPECT_THROW(splitPoints({{0, 0, std::numeric_limits<double>::quiet_NaN()}}), std::invalid_argument);
   SplitPointsOptions options;
-  options.most_parts = 0;
+  options.max_parts = 0;
   EXPECT_THROW(splitPoints({}, options), std::invalid_argument);
   options = {};
   options.max_error = -1;

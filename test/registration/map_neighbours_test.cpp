@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "gaussmap/editing/compress.h"
 #include "gaussmap/mapping/build.h"
 

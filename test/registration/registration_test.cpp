@@ -9,7 +9,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/mapping/build.h"
 #include "gaussmap/mapping/refine.h"
@@ -226,7 +226,7 @@ TEST(Registration, RefusesWhatMeansNothing) {
   };
   refused([](auto& o) { o.resolution = -1.0; });
   refused([](auto& o) { o.resolution = std::numeric_limits<double>::infinity(); });
-  refused([](auto& o) { o.most_gaussians = 0; });
+  refused([](auto& o) { o.max_gaussians = 0; });
   refused([](auto& o) { o.max_iterations = 0; });
   refused([](auto& o) { o.kernel = 0.0; });
   refused([](auto& o) { o.translation = 0.0; });

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 
 namespace gaussmap {
 using namespace detail;

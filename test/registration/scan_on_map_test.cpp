@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "gaussmap/mapping/build.h"
 
 namespace gaussmap {

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "gaussmap/segments/planar_scan.h"
+#include "gaussmap/segments/laser_scan.h"
 #include "gaussmap/segments/segment_fitter.h"
 #include "simulation/simulation.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "evaluation/wall_score.h"
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "gaussmap/segments/segment_fitter.h"
 #include "simulation/simulation.h"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/segments/planar_scan.h"
+#include "gaussmap/segments/laser_scan.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "gaussmap/io/pcd/pcd_writer.h"
 #include "gaussmap/io/scans/pcd_scans.h"
 #include "io/files/hostile_files.h"
@@ -167,7 +167,7 @@ TEST_F(PlanarScanTest, SlicesAsABruteForceSearchDoesWhenTheSensorLeans) {
   for (int bin = 0; bin < 120; ++bin) {
     double nearest = std::numeric_limits<double>::infinity();
     for (const Vector<3>& point : points) {
-      const Vector<3> on_map = pose.rotation * point + pose.translation;
+      const Vector<3> on_map = pose * point;
       if (on_map.z() < 4.0 || on_map.z() > 6.0) continue;
       const Vector<2> way = on_map.head<2>() - scan.pose.translation;
       const double bearing = std::remainder(std::atan2(way.y(), way.x()) - scan.pose.heading, 2.0 * kPi) / kDegree;

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "gaussmap/segments/laser_scan.h"
 #include "gaussmap/segments/segment_map.h"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 
 namespace gaussmap::detail {
 namespace {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "gaussmap/sensor/range_image.h"
 
 // Sensors for tests, and images of scenes that are a formula.

@@ -16,7 +16,7 @@ using namespace simulation;
 namespace {
 
 Eigen::Vector3d onMap(const SimulatedScan& scan, std::size_t i) {
-  return scan.pose.rotation * scan.points[i] + scan.pose.translation;
+  return scan.pose * scan.points[i];
 }
 
 TEST(SimulatedScan, WithoutNoiseLiesOnTheMesh) {

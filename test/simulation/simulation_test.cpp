@@ -53,7 +53,7 @@ TEST_P(Simulations, WithoutNoiseLieOnTheirMesh) {
     EXPECT_GT(scan.points.size(), 300u);
     ASSERT_EQ(scan.truth.size(), scan.points.size());
     for (std::size_t j = 0; j < scan.points.size(); ++j) {
-      const Eigen::Vector3d on_map = scan.pose.rotation * scan.points[j] + scan.pose.translation;
+      const Eigen::Vector3d on_map = scan.pose * scan.points[j];
       ASSERT_LT(mesh.distance(on_map), 1e-9);
       ASSERT_LT((on_map - scan.truth[j]).norm(), 1e-9);
       ASSERT_EQ(scan.labels[j], SurfaceLabel::Static);

@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-#include "gaussmap/io/export/gaussian_table.h"
+#include "gaussmap/io/export/map_export.h"
 #include "gaussmap/mapping/build.h"
 #include "io/files/temporary_directory.h"
 #include "map/random_clouds.h"
@@ -21,7 +21,7 @@ class GaussianVtp : public testing::Test {
  protected:
   vtkPolyData* read(const GaussianMap<3>& map, std::optional<int> scale) {
     const std::filesystem::path path = directory_.path() / "map.vtp";
-    count_ = writeGaussianVtp(path, map, scale);
+    count_ = saveVtp(path, map, scale);
     reader_->SetFileName(path.c_str());
     reader_->Modified();  // another file of the same name
     reader_->Update();

@@ -67,12 +67,12 @@ void compareMap(const HausdorffCommand& command, ReferenceKind kind) {
   std::optional<Reference> reference;
   std::optional<GaussianMap<3>> other;
   if (kind == ReferenceKind::Map)
-    other = loadAnyMap(command.onlyReference());
+    other = loadAny(command.onlyReference());
   else if (kind == ReferenceKind::Mesh)
     reference = readMesh(command);
   else
     reference = Reference(readPoints(command.reference, command.samples.threads));
-  const GaussianMap<3> map = loadAnyMap(command.subject);
+  const GaussianMap<3> map = loadAny(command.subject);
   std::vector<const GaussianMap<3>*> maps = {&map};
   if (other) maps.push_back(&*other);
   const std::vector<Level> levels = chosenLevels(command, maps);

@@ -9,7 +9,7 @@ namespace gaussmap::app {
 
 void scoreMap(const HausdorffCommand& command) {
   const std::vector<Vector<3>> points = readPoints(command.reference, command.samples.threads);
-  const GaussianMap<3> map = loadAnyMap(command.subject);
+  const GaussianMap<3> map = loadAny(command.subject);
   HeldOutOptions scoring = command.scoring;
   scoring.threads = command.samples.threads;
   Json all = Json::array();

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/json.h"
-#include "gaussmap/mapping/accumulate_scans.h"
+#include "gaussmap/mapping/build.h"
 
 namespace gaussmap::app {
 

@@ -3,7 +3,7 @@
 #include "commands/pcd2map/scan_report.h"
 #include "common/progress_bar.h"
 #include "gaussmap/io/gmap/build_map_file.h"
-#include "gaussmap/io/gmap/map_history.h"
+#include "gaussmap/io/gmap/map_file.h"
 
 namespace gaussmap::app {
 

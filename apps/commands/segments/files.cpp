@@ -15,9 +15,9 @@ void checkSegmentsName(const std::string& path) {
 
 void writeSegments(const std::string& path, const FittedSegments& fitted) {
   const std::string extension = std::filesystem::path(path).extension().string();
-  if (extension == ".pcd") return writeSegmentPcd(path, fitted.map);
-  if (extension == ".geojson") return writeSegmentGeoJson(path, fitted.map);
-  if (extension == ".csv") return writeSegmentCsv(path, fitted.map);
+  if (extension == ".pcd") return saveSegmentsPcd(path, fitted.map);
+  if (extension == ".geojson") return saveSegmentsGeoJson(path, fitted.map);
+  if (extension == ".csv") return saveSegmentsCsv(path, fitted.map);
   drawSegments(fitted.map, {fitted.evidence, fitted.field}, path);
 }
 

@@ -7,7 +7,7 @@
 #include "common/report.h"
 
 #include "gaussmap/io/logs/carmen_log.h"
-#include "gaussmap/segments/planar_scan.h"
+#include "gaussmap/segments/laser_scan.h"
 
 namespace gaussmap::app {
 namespace {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gaussmap/core/gaussian.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -19,7 +20,7 @@ enum class MergeCost {
 
 struct AgglomerateOptions {
   MergeCost cost = MergeCost::Volume;
-  std::size_t most_exact = 1000;       ///< up to so many data every pair is a candidate
+  std::size_t max_exact = 1000;        ///< up to so many data every pair is a candidate
   std::size_t neighbours = 8;          ///< beyond, only pairs of so many nearest neighbours (by their means), >= 1 ...
   std::size_t restricted_until = 500;  ///< ... until so many clusters are left; then every pair again, >= 1
 };
@@ -43,12 +44,12 @@ struct Dendrogram {
 /// Data: means finite, covariances positive definite, weights and areas > 0 and < 1e100, one area a datum; else
 /// std::invalid_argument or std::domain_error (covariance), naming the datum. n < 2^31.
 template <int D>
-Dendrogram agglomerate(const std::vector<Gaussian<D>>& data, const std::vector<double>& areas,
-                       const AgglomerateOptions& options = {});
+GAUSSMAP_API Dendrogram agglomerate(const std::vector<Gaussian<D>>& data, const std::vector<double>& areas,
+                                    const AgglomerateOptions& options = {});
 
 /// The partition into k parts that stood before the last k - 1 merges: n labels in [0, k), ordered by the smallest
 /// datum of each part. Partitions of one dendrogram are nested. Throws std::invalid_argument unless 1 <= k <= n;
 /// no data have no labels, whatever k.
-std::vector<int> labels(const Dendrogram& dendrogram, std::size_t k);
+GAUSSMAP_API std::vector<int> labels(const Dendrogram& dendrogram, std::size_t k);
 
 }  // namespace gaussmap

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gaussmap/core/gaussian.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -44,7 +45,7 @@ struct KLClustering {
 /// The assignment is one n x F by F x k product, F = 1 + D + D (D + 1) / 2; its rounding is about
 /// 1e-16 (extent of the data / smallest standard deviation of a reference)^2 nat, wherever the data are.
 template <int D>
-class KLKMeans {
+class GAUSSMAP_API KLKMeans {
  public:
   /// Throws std::invalid_argument, naming the option.
   explicit KLKMeans(const KLKMeansOptions& options = {});
@@ -68,7 +69,8 @@ class KLKMeans {
 ///   never exceeds that of the current references. With k >= n each datum becomes its own cluster, distortion 0.
 /// - options.k is not used. Data, references and errors as for KLKMeans.
 template <int D>
-KLClustering<D> insertCluster(const std::vector<Gaussian<D>>& data, const std::vector<Gaussian<D>>& current_references,
-                              const KLKMeansOptions& options = {});
+GAUSSMAP_API KLClustering<D> insertCluster(const std::vector<Gaussian<D>>& data,
+                                           const std::vector<Gaussian<D>>& current_references,
+                                           const KLKMeansOptions& options = {});
 
 }  // namespace gaussmap

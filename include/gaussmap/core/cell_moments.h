@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "gaussmap/core/gaussian.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -16,9 +17,9 @@ inline constexpr std::int64_t kStepsPerCell = std::int64_t{1} << 16;
 /// steps, -32768 ... 32767: a product has at most 30 bits, so a cell holds up to 2^33 - 1 points. One more is refused:
 /// add() and += throw std::length_error and leave the sums as they were.
 template <int D>
-struct CellMoments {
+struct GAUSSMAP_API CellMoments {
   static constexpr int kProducts = D * (D + 1) / 2;
-  static constexpr std::int64_t kMostPoints = (std::int64_t{1} << 33) - 1;
+  static constexpr std::int64_t kMaxPoints = (std::int64_t{1} << 33) - 1;
   using Offset = std::array<std::int32_t, D>;
 
   std::int64_t count = 0;
@@ -55,7 +56,7 @@ struct CellMoments {
 
   /// Throws std::length_error if so many more points are too many.
   void requireRoom(std::int64_t more) const {
-    if (more > kMostPoints - count) throwTooMany();
+    if (more > kMaxPoints - count) throwTooMany();
   }
 
   friend bool operator==(const CellMoments& a, const CellMoments& b) {

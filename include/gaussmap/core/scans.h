@@ -9,10 +9,32 @@
 #include <string>
 #include <vector>
 
-#include "gaussmap/core/point_block.h"
 #include "gaussmap/core/pose.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
+
+/// A handful of points, one array an axis: what readers fill and what MomentGrid counts. Small enough to
+/// stay in the first-level cache, so that a scan is never copied as a whole.
+template <int D>
+struct PointBlock {
+  static constexpr std::size_t kCapacity = 512;
+  std::size_t size = 0;
+  alignas(64) double coordinate[D][kCapacity];  ///< [m]
+};
+
+/// Points where they lie in somebody's records: x, y, z as floats one after the other [m], a record every `stride`
+/// floats.
+struct PointsView {
+  const float* first = nullptr;
+  std::size_t count = 0;
+  std::size_t stride = 3;
+
+  const float* operator[](std::size_t i) const { return first + i * stride; }
+};
+
+/// R p + t for every point of a block, in place, NaN points stay NaN. The quaternion must have unit length.
+GAUSSMAP_API void transform(const Pose& pose, PointBlock<3>& block);
 
 /// The frame that the points of scans are given in.
 enum class ScanFrame {
@@ -42,7 +64,7 @@ inline bool isReturn(const Eigen::Vector3d& point) {
 }
 
 /// Where the points of scans went; the four kinds add up to `read`.
-struct PointCounts {
+struct GAUSSMAP_API PointCounts {
   std::int64_t read = 0;
   std::int64_t accepted = 0;
   std::int64_t non_finite = 0;
@@ -53,7 +75,7 @@ struct PointCounts {
 };
 
 /// The points of one scan, block by block. All functions are thread-safe.
-class ScanReader {
+class GAUSSMAP_API ScanReader {
  public:
   virtual ~ScanReader() = default;
 
@@ -76,7 +98,7 @@ class ScanReader {
 /// Scans with poses, wherever they are: PcdScans are files, MemoryScans are in memory, and any program can bring its
 /// own. What builds, maps on line, cleans or measures takes scans through this interface.
 /// All functions are thread-safe: scans are read in parallel.
-class Scans {
+class GAUSSMAP_API Scans {
  public:
   virtual ~Scans() = default;
 
@@ -93,7 +115,7 @@ class Scans {
 };
 
 /// Scans in memory, for a program that has them from elsewhere.
-class MemoryScans : public Scans {
+class GAUSSMAP_API MemoryScans : public Scans {
  public:
   /// `frame`: that of the points of all scans.
   explicit MemoryScans(ScanFrame frame = ScanFrame::Sensor) : frame_(frame) {}

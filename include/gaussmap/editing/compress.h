@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "gaussmap/map/gaussian_map.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -31,6 +32,6 @@ struct CompressOptions {
 /// finest cells: a max_error below half their side deletes next to nothing. Throws std::invalid_argument unless
 /// max_error is a positive number of metres and samples > 0, and if the map is compressed already: what was deleted is
 /// not there to measure against.
-GaussianMap<3> compress(GaussianMap<3> map, double max_error, const CompressOptions& options = {});
+GAUSSMAP_API GaussianMap<3> compress(GaussianMap<3> map, double max_error, const CompressOptions& options = {});
 
 }  // namespace gaussmap

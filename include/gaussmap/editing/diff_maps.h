@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gaussmap/map/gaussian_map.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -30,7 +31,7 @@ struct Difference {
   double p_value = 1.0;  ///< of the test that decided
 };
 
-struct MapDiff {
+struct GAUSSMAP_API MapDiff {
   std::vector<Difference> first;           ///< of the Gaussians of the first map: None, Gone or Changed
   std::vector<Difference> second;          ///< of the second: None, New or Changed
   std::size_t count(Change change) const;  ///< New and Changed of the second, Gone of the first; None of the second
@@ -50,6 +51,7 @@ struct MapDiff {
 /// of the clusters of scale 1 at a level of 1 %, of the finest scale 0.002 %). Throws std::invalid_argument, naming the
 /// option, if the cells of the scale differ or an option is not usable.
 template <int D>
-MapDiff diffMaps(const GaussianMap<D>& first, const GaussianMap<D>& second, const DiffOptions& options = {});
+GAUSSMAP_API MapDiff diffMaps(const GaussianMap<D>& first, const GaussianMap<D>& second,
+                              const DiffOptions& options = {});
 
 }  // namespace gaussmap

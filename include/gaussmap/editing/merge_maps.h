@@ -3,6 +3,7 @@
 
 #include "gaussmap/clustering/agglomerate.h"
 #include "gaussmap/map/gaussian_map.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -32,6 +33,7 @@ struct MergeMapsOptions {
 /// Throws std::invalid_argument, naming the option, if the options differ (transformMap() makes one map fit the other);
 /// if a map is compressed: what it does not have cannot be merged; and if a cell would hold 2^33 points or more.
 template <int D>
-GaussianMap<D> mergeMaps(const GaussianMap<D>& a, const GaussianMap<D>& b, const MergeMapsOptions& options = {});
+GAUSSMAP_API GaussianMap<D> mergeMaps(const GaussianMap<D>& a, const GaussianMap<D>& b,
+                                      const MergeMapsOptions& options = {});
 
 }  // namespace gaussmap

@@ -3,7 +3,8 @@
 
 #include "gaussmap/clustering/agglomerate.h"
 #include "gaussmap/map/gaussian_map.h"
-#include "gaussmap/mapping/budget.h"
+#include "gaussmap/mapping/refine.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -24,6 +25,6 @@ struct SimplifyOptions {
 /// the map does not have, fewer Gaussians than a scale has cells, and MaxBytes that one Gaussian per cell exceeds
 /// (naming the bytes that it takes).
 template <int D>
-RefineResult<D> simplify(GaussianMap<D> map, const Budget& budget, const SimplifyOptions& options = {});
+GAUSSMAP_API RefineResult<D> simplify(GaussianMap<D> map, const Budget& budget, const SimplifyOptions& options = {});
 
 }  // namespace gaussmap

@@ -7,6 +7,7 @@
 #include "gaussmap/clustering/agglomerate.h"
 #include "gaussmap/core/pose.h"
 #include "gaussmap/map/gaussian_map.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -17,7 +18,7 @@ using PoseCovariance = Eigen::Matrix<double, D*(D + 1) / 2, D*(D + 1) / 2, Eigen
 
 /// p_target = R p + t.
 template <int D>
-struct RigidMotion {
+struct GAUSSMAP_API RigidMotion {
   Matrix<D> rotation = Matrix<D>::Identity();   ///< R, orthogonal, determinant 1
   Vector<D> translation = Vector<D>::Zero();    ///< t [m]
   std::optional<PoseCovariance<D>> covariance;  ///< how well R and t are known; nothing: exactly
@@ -26,7 +27,7 @@ struct RigidMotion {
 };
 
 /// The same as a pose of unit quaternion.
-RigidMotion<3> rigidMotion(const Pose& pose);
+GAUSSMAP_API RigidMotion<3> rigidMotion(const Pose& pose);
 
 struct TransformOptions {
   std::optional<MapOptions> grid;            ///< of the result; nothing: that of the map
@@ -52,7 +53,7 @@ struct TransformOptions {
 /// Throws std::invalid_argument for a rotation that is none, a covariance that is not finite, symmetric and positive
 /// semi-definite, options of no grid, and a compressed map; std::out_of_range for a mean too far for the cells.
 template <int D>
-GaussianMap<D> transformMap(const GaussianMap<D>& map, const RigidMotion<D>& motion,
-                            const TransformOptions& options = {});
+GAUSSMAP_API GaussianMap<D> transformMap(const GaussianMap<D>& map, const RigidMotion<D>& motion,
+                                         const TransformOptions& options = {});
 
 }  // namespace gaussmap

@@ -10,6 +10,7 @@
 #include "gaussmap/map/gaussian_map.h"
 #include "gaussmap/map/sampling.h"
 #include "gaussmap/mesh/triangle_mesh.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -25,7 +26,7 @@ struct DistanceSummary {
 };
 
 /// Throws std::invalid_argument if there are no distances.
-DistanceSummary summarise(std::vector<double> distances);
+GAUSSMAP_API DistanceSummary summarise(std::vector<double> distances);
 
 /// Distances between two sets of points, both directions apart.
 struct HausdorffResult {
@@ -45,8 +46,8 @@ struct PointDistances {
 /// Hausdorff distance of two sets of points [m], one frame. `threads` = 0: all; never shows in the result.
 /// The single distances on request. Throws std::invalid_argument if a set is empty or a point is not finite (naming
 /// its index).
-HausdorffResult hausdorff(const std::vector<Vector<3>>& a, const std::vector<Vector<3>>& b, int threads = 0,
-                          PointDistances* distances = nullptr);
+GAUSSMAP_API HausdorffResult hausdorff(const std::vector<Vector<3>>& a, const std::vector<Vector<3>>& b,
+                                       int threads = 0, PointDistances* distances = nullptr);
 
 /// The maxima of hausdorff() alone, the same to the last bit. Most points are never searched for: they, or whole boxes
 /// of them, are seen to have a neighbour nearer than the largest distance known already. Nearly all the time goes
@@ -57,7 +58,8 @@ struct HausdorffMaxima {
   double hausdorff() const { return forward > backward ? forward : backward; }
 };
 /// Throws as hausdorff().
-HausdorffMaxima hausdorffMaxima(const std::vector<Vector<3>>& a, const std::vector<Vector<3>>& b, int threads = 0);
+GAUSSMAP_API HausdorffMaxima hausdorffMaxima(const std::vector<Vector<3>>& a, const std::vector<Vector<3>>& b,
+                                             int threads = 0);
 
 /// How far one scale of a map is from a reference; forward = from the map's samples to the reference (what the map
 /// invents), backward = from the reference to the samples (what the map misses).
@@ -70,7 +72,7 @@ struct MapHausdorff {
 };
 
 /// What maps and clouds are compared with, sorted once for any number of comparisons. A value; copies are cheap.
-class Reference {
+class GAUSSMAP_API Reference {
  public:
   /// Points [m]. Throws std::invalid_argument if there are none or one is not finite (naming its index).
   explicit Reference(std::vector<Vector<3>> points);
@@ -106,7 +108,7 @@ class Reference {
 };
 
 /// The same for one scale and reference points [m, map frame]. Throws as Reference and its compare().
-MapHausdorff evaluateMap(const GaussianMap<3>& map, int scale, const std::vector<Vector<3>>& reference,
-                         const SampleOptions& options = {});
+GAUSSMAP_API MapHausdorff evaluateMap(const GaussianMap<3>& map, int scale, const std::vector<Vector<3>>& reference,
+                                      const SampleOptions& options = {});
 
 }  // namespace gaussmap

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gaussmap/map/gaussian_map.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -14,12 +15,13 @@ namespace gaussmap {
 /// Throws std::out_of_range for a scale that the map does not have, or a point that has no cell (also if it is not
 /// finite); std::domain_error if a covariance is not positive definite.
 template <int D>
-std::vector<double> logLikelihoods(const GaussianMap<D>& map, int scale, const std::vector<Vector<D>>& points,
-                                   int threads = 0);
+GAUSSMAP_API std::vector<double> logLikelihoods(const GaussianMap<D>& map, int scale,
+                                                const std::vector<Vector<D>>& points, int threads = 0);
 /// The same with the map at its finest, leaves(): of every scale the coarse cells without detail under them among the
 /// point's cell and those next to it; weights divided by that of the whole map.
 template <int D>
-std::vector<double> logLikelihoods(const GaussianMap<D>& map, const std::vector<Vector<D>>& points, int threads = 0);
+GAUSSMAP_API std::vector<double> logLikelihoods(const GaussianMap<D>& map, const std::vector<Vector<D>>& points,
+                                                int threads = 0);
 
 struct HeldOutOptions {
   double background = 0.01;  ///< epsilon, share of the points that may come from anywhere, in (0, 1)
@@ -44,11 +46,12 @@ struct HeldOutResult {
 /// Scores points of which none was used to build the map. Throws as logLikelihoods(), and std::invalid_argument if
 /// there are no points or an option makes no sense (naming it).
 template <int D>
-HeldOutResult heldOutLogLikelihood(const GaussianMap<D>& map, int scale, const std::vector<Vector<D>>& points,
-                                   const HeldOutOptions& options = {});
+GAUSSMAP_API HeldOutResult heldOutLogLikelihood(const GaussianMap<D>& map, int scale,
+                                                const std::vector<Vector<D>>& points,
+                                                const HeldOutOptions& options = {});
 /// The same with the map at its finest. A point lies in no cell if none that it lies in is a leaf.
 template <int D>
-HeldOutResult heldOutLogLikelihood(const GaussianMap<D>& map, const std::vector<Vector<D>>& points,
-                                   const HeldOutOptions& options = {});
+GAUSSMAP_API HeldOutResult heldOutLogLikelihood(const GaussianMap<D>& map, const std::vector<Vector<D>>& points,
+                                                const HeldOutOptions& options = {});
 
 }  // namespace gaussmap

@@ -9,6 +9,7 @@
 #include "gaussmap/core/cell_moments.h"
 #include "gaussmap/core/gaussian.h"
 #include "gaussmap/map/grid.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -41,9 +42,9 @@ struct MapScale {
 /// A multi-scale map: at every scale a sparse grid of cells with Gaussians in them, one per cell at the finest
 /// scale, one or more at the coarser ones, linked to the finer Gaussians that they stand for (Yguel 2009, sec. 3, 5).
 /// A coarse cell may stand alone, without cells under it: compress() deletes detail where it is not needed.
-/// A value: made by build(), improved by refine(), kept by saveMap(). Reading from several threads is safe.
+/// A value: made by build(), improved by refine(), kept by save(). Reading from several threads is safe.
 template <int D>
-class GaussianMap {
+class GAUSSMAP_API GaussianMap {
  public:
   /// An empty map. Throws std::invalid_argument on unusable options.
   explicit GaussianMap(const MapOptions& options = {})
@@ -112,6 +113,6 @@ using GaussianMapQuadtree = GaussianMap<2>;
 
 /// The permutation that puts cells of one scale into key order; `levels` = how many coarser scales there are.
 template <int D>
-std::vector<std::uint32_t> keyOrder(const std::vector<CellKey<D>>& keys, int ratio, int levels);
+GAUSSMAP_API std::vector<std::uint32_t> keyOrder(const std::vector<CellKey<D>>& keys, int ratio, int levels);
 
 }  // namespace gaussmap

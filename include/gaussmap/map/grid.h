@@ -9,6 +9,7 @@
 
 #include "gaussmap/core/cell_moments.h"
 #include "gaussmap/core/gaussian.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -19,7 +20,7 @@ using CellKey = std::array<std::int32_t, D>;
 
 /// "(1, -2, 0)", for messages.
 template <int D>
-std::string toString(const CellKey<D>& key);
+GAUSSMAP_API std::string toString(const CellKey<D>& key);
 
 /// What a map is made of; two maps with equal options share their cells at every scale.
 struct MapOptions {
@@ -42,11 +43,11 @@ struct Box {
 
 /// low <= point < high along every axis.
 template <int D>
-bool isInBox(const Box<D>& box, const Vector<D>& point);
+GAUSSMAP_API bool isInBox(const Box<D>& box, const Vector<D>& point);
 
 /// Where cells are: sides, keys, centres, parents. Scale s has cells of side resolution * ratio^s.
 template <int D>
-class Grid {
+class GAUSSMAP_API Grid {
  public:
   /// Throws std::invalid_argument, naming the option, if the options describe no usable grid.
   explicit Grid(const MapOptions& options = {});

@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "gaussmap/core/cell_moments.h"
-#include "gaussmap/core/point_block.h"
+#include "gaussmap/core/scans.h"
 #include "gaussmap/map/grid.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -17,7 +18,7 @@ namespace gaussmap {
 /// Open addressing over 8-byte slots, cells in fixed chunks: nothing is allocated per cell and a cell never moves. A
 /// moved-from grid can only be destroyed or assigned to.
 template <int D>
-class MomentGrid {
+class GAUSSMAP_API MomentGrid {
  public:
   struct alignas(32) Cell {  // two cache lines, never three
     CellKey<D> key;
@@ -67,7 +68,7 @@ class MomentGrid {
 
   /// Adds all cells of another grid of the same resolution, on `threads` threads (0 = all): exact, so any order of
   /// merging gives the same sums. Throws std::invalid_argument if the resolutions differ.
-  void merge(const MomentGrid& other, int threads = 1);
+  void merge(const MomentGrid& other, int threads = 0);
 
   /// Bytes held: of chunks, what cells have taken so far.
   std::size_t memoryBytes() const;
@@ -106,6 +107,6 @@ class MomentGrid {
 /// Counts points [map frame] on `threads` threads (0 = all), which never show in the sums: they are exact. Non-finite
 /// points are left out. Throws std::invalid_argument unless the resolution [m] is positive and finite,
 /// std::out_of_range, naming the point, if one is too far for 32-bit cells.
-MomentGrid<3> countPoints(double resolution, const PointsView& points, int threads = 0);
+GAUSSMAP_API MomentGrid<3> countPoints(double resolution, const PointsView& points, int threads = 0);
 
 }  // namespace gaussmap

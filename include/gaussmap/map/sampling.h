@@ -7,6 +7,7 @@
 
 #include "gaussmap/core/gaussian.h"
 #include "gaussmap/map/gaussian_map.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -33,7 +34,7 @@ struct SampleOptions {
 
 /// Samples in the order of the map: by cell, then by Gaussian.
 template <int D>
-struct MapSamples {
+struct GAUSSMAP_API MapSamples {
   std::vector<Vector<D>> points;        ///< n [m], map frame, each inside the bounds of its Gaussian
   std::vector<std::uint32_t> gaussian;  ///< n, index of the sample's Gaussian in the scale (or in leaves())
   std::vector<double> mahalanobis;      ///< n, distance to its Gaussian's mean in standard deviations
@@ -47,7 +48,8 @@ struct MapSamples {
 /// Throws std::out_of_range for a scale the map does not have, std::domain_error if a covariance is not positive
 /// definite.
 template <int D>
-std::vector<std::size_t> sampleCounts(const GaussianMap<D>& map, int scale, const SampleOptions& options = {});
+GAUSSMAP_API std::vector<std::size_t> sampleCounts(const GaussianMap<D>& map, int scale,
+                                                   const SampleOptions& options = {});
 
 /// Samples of the Gaussians of one scale, those outside their Gaussian's bounds rejected, Yguel 2009 sec. 6 (there: its
 /// cell). At the finest scale both kinds of bounds are the cells.
@@ -55,11 +57,11 @@ std::vector<std::size_t> sampleCounts(const GaussianMap<D>& map, int scale, cons
 /// placed by then is counted in `unplaced`. A Gaussian's samples depend on the seed, its cell's key, its rank in
 /// the cell and their number, not on where it stands in the map. Throws as sampleCounts().
 template <int D>
-MapSamples<D> sampleMap(const GaussianMap<D>& map, int scale, const SampleOptions& options = {});
+GAUSSMAP_API MapSamples<D> sampleMap(const GaussianMap<D>& map, int scale, const SampleOptions& options = {});
 
 /// The same for the map at its finest, leaves(): of a compressed map the samples of all scales together. Coarse
 /// Gaussians without detail under them are bounded by their cells.
 template <int D>
-MapSamples<D> sampleLeaves(const GaussianMap<D>& map, const SampleOptions& options = {});
+GAUSSMAP_API MapSamples<D> sampleLeaves(const GaussianMap<D>& map, const SampleOptions& options = {});
 
 }  // namespace gaussmap

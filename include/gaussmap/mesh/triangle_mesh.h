@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gaussmap/core/pose.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -21,20 +22,21 @@ struct TriangleMesh {
 
 /// Throws std::invalid_argument, naming the vertex or the triangle, if a vertex is not finite or beyond 1e70 m, or
 /// an index is out of range.
-void checkMesh(const TriangleMesh& mesh);
+GAUSSMAP_API void checkMesh(const TriangleMesh& mesh);
 
 /// Area of all triangles [m^2].
-double surfaceArea(const TriangleMesh& mesh);
+GAUSSMAP_API double surfaceArea(const TriangleMesh& mesh);
 
 /// Adds the triangles of `part` behind those of `whole`. Throws std::length_error beyond 2^32 - 1 vertices.
-void append(TriangleMesh& whole, const TriangleMesh& part);
+GAUSSMAP_API void append(TriangleMesh& whole, const TriangleMesh& part);
 
 /// The mesh moved by R p + t. The quaternion must have unit length.
-TriangleMesh transformed(TriangleMesh mesh, const Pose& pose);
+GAUSSMAP_API TriangleMesh transformed(TriangleMesh mesh, const Pose& pose);
 
 /// `count` points on the triangles [m], in the order of the triangles: as many on each as its share of the area says,
 /// rounded up or down, at random places. Same mesh + same seed = same points. Throws std::invalid_argument if the mesh
 /// has a fault (see checkMesh()) or, for count > 0, no area.
-std::vector<Eigen::Vector3d> sampleSurface(const TriangleMesh& mesh, std::size_t count, std::uint64_t seed = 1);
+GAUSSMAP_API std::vector<Eigen::Vector3d> sampleSurface(const TriangleMesh& mesh, std::size_t count,
+                                                        std::uint64_t seed = 1);
 
 }  // namespace gaussmap

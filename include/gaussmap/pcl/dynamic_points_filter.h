@@ -14,7 +14,8 @@
 
 #include "gaussmap/core/pose.h"
 #include "gaussmap/map/queries.h"
-#include "gaussmap/mapping/accumulate_scans.h"
+#include "gaussmap/mapping/build.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -36,7 +37,7 @@ struct DynamicPointsFilterOptions {
 /// either way. Any point type with x, y, z. Without a map, or with a pose that is none, an error is printed and nothing
 /// passes.
 template <typename PointT>
-class DynamicPointsFilter : public pcl::FilterIndices<PointT> {
+class GAUSSMAP_API DynamicPointsFilter : public pcl::FilterIndices<PointT> {
  public:
   using Ptr = pcl::shared_ptr<DynamicPointsFilter>;
   using ConstPtr = pcl::shared_ptr<const DynamicPointsFilter>;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gaussmap/points/split_points.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -40,7 +41,7 @@ struct GaussianMapFilterOptions {
 /// are not the nearest to the mean of their Gaussian. A filter without cloud gives nothing; unusable options print an
 /// error and give an empty cloud.
 template <typename PointT>
-class GaussianMapFilter : public pcl::Filter<PointT> {
+class GAUSSMAP_API GaussianMapFilter : public pcl::Filter<PointT> {
  public:
   using Ptr = pcl::shared_ptr<GaussianMapFilter>;
   using ConstPtr = pcl::shared_ptr<const GaussianMapFilter>;

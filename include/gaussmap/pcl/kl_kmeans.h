@@ -9,6 +9,7 @@
 
 #include "gaussmap/clustering/kl_kmeans.h"
 #include "gaussmap/pcl/point_gaussian.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -16,7 +17,7 @@ namespace gaussmap {
 /// setNumberOfClusters(), cluster(). Points whose mean, covariance or weight is not finite are in no cluster.
 /// What cannot be clustered (no cloud, no clusters, a covariance that is not positive definite) prints an error and
 /// gives nothing.
-class PointCloudKLKMeans : public pcl::PCLBase<PointGaussian> {
+class GAUSSMAP_API PointCloudKLKMeans : public pcl::PCLBase<PointGaussian> {
  public:
   explicit PointCloudKLKMeans(const KLKMeansOptions& options = {}) : options_(options) {}
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "gaussmap/points/normals.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -23,17 +24,17 @@ namespace gaussmap {
 /// normals for the points of setIndices(); setSearchSurface() gives the points that they are made of; an organised
 /// cloud stays organised; where there is no normal there is NaN, and the output is not dense.
 template <typename PointInT, typename PointOutT = pcl::Normal>
-class GaussianMapNormalEstimation : public pcl::Feature<PointInT, PointOutT> {
+class GAUSSMAP_API CellNormalEstimation : public pcl::Feature<PointInT, PointOutT> {
   using Base = pcl::Feature<PointInT, PointOutT>;
 
  public:
-  using Ptr = pcl::shared_ptr<GaussianMapNormalEstimation>;
-  using ConstPtr = pcl::shared_ptr<const GaussianMapNormalEstimation>;
+  using Ptr = pcl::shared_ptr<CellNormalEstimation>;
+  using ConstPtr = pcl::shared_ptr<const CellNormalEstimation>;
   using PointCloudConstPtr = typename Base::PointCloudConstPtr;
   using PointCloudOut = typename Base::PointCloudOut;
 
-  explicit GaussianMapNormalEstimation(const PointNormalOptions& options = {}) : options_(options) {
-    this->feature_name_ = "GaussianMapNormalEstimation";
+  explicit CellNormalEstimation(const PointNormalOptions& options = {}) : options_(options) {
+    this->feature_name_ = "CellNormalEstimation";
   }
 
   /// The points that a plane is made of are at least so many. setKSearch(k) does the same with 0.7 k: the planes are
@@ -121,10 +122,15 @@ class GaussianMapNormalEstimation : public pcl::Feature<PointInT, PointOutT> {
   bool use_sensor_origin_ = true;
 };
 
-extern template class GaussianMapNormalEstimation<pcl::PointXYZ, pcl::Normal>;
-extern template class GaussianMapNormalEstimation<pcl::PointXYZI, pcl::Normal>;
-extern template class GaussianMapNormalEstimation<pcl::PointXYZRGB, pcl::Normal>;
-extern template class GaussianMapNormalEstimation<pcl::PointNormal, pcl::Normal>;
-extern template class GaussianMapNormalEstimation<pcl::PointXYZINormal, pcl::Normal>;
+/// The name before version 0.2. There was never a map in it.
+template <typename PointInT, typename PointOutT = pcl::Normal>
+using GaussianMapNormalEstimation [[deprecated("use CellNormalEstimation")]] =
+    CellNormalEstimation<PointInT, PointOutT>;
+
+extern template class CellNormalEstimation<pcl::PointXYZ, pcl::Normal>;
+extern template class CellNormalEstimation<pcl::PointXYZI, pcl::Normal>;
+extern template class CellNormalEstimation<pcl::PointXYZRGB, pcl::Normal>;
+extern template class CellNormalEstimation<pcl::PointNormal, pcl::Normal>;
+extern template class CellNormalEstimation<pcl::PointXYZINormal, pcl::Normal>;
 
 }  // namespace gaussmap

@@ -3,6 +3,8 @@
 
 #include <pcl/point_types.h>
 #include <pcl/registration/registration.h>
+#include <pcl/search/kdtree.h>
+#include <limits>
 
 #include <Eigen/Core>
 #include <filesystem>
@@ -10,10 +12,54 @@
 #include <vector>
 
 #include "gaussmap/map/gaussian_map.h"
-#include "gaussmap/pcl/lazy_kd_tree.h"
 #include "gaussmap/registration/registration.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
+
+/// A kd-tree that is made when it is first asked. A point that is not finite, or a tree of nothing, has no neighbour:
+/// the distance is then infinite.
+template <typename PointT>
+class LazyKdTree : public pcl::search::KdTree<PointT> {
+  using Base = pcl::search::KdTree<PointT>;
+
+ public:
+  using LazyPtr = pcl::shared_ptr<LazyKdTree>;
+  using typename Base::PointCloudConstPtr;
+
+  /// Unlike setInputCloud(), this makes no tree yet.
+  void setCloud(const PointCloudConstPtr& cloud) {
+    this->input_ = cloud;
+    made_ = false;
+  }
+
+  int nearestKSearch(const PointT& point, int k, pcl::Indices& indices, std::vector<float>& squared) const override {
+    if (make(point)) return Base::nearestKSearch(point, k, indices, squared);
+    indices.assign(1, 0);
+    squared.assign(1, std::numeric_limits<float>::infinity());
+    return 0;
+  }
+  int radiusSearch(const PointT& point, double radius, pcl::Indices& indices, std::vector<float>& squared,
+                   unsigned int most = 0) const override {
+    if (make(point)) return Base::radiusSearch(point, radius, indices, squared, most);
+    indices.clear();
+    squared.clear();
+    return 0;
+  }
+  using Base::nearestKSearch;
+  using Base::radiusSearch;
+
+ private:
+  /// False if there is nothing to look in or for.
+  bool make(const PointT& point) const {
+    if (!this->input_ || !point.getVector3fMap().allFinite()) return false;
+    if (!made_) this->tree_->setInputCloud(this->input_);
+    made_ = true;
+    return this->tree_->getInputCloud() != nullptr;
+  }
+
+  mutable bool made_ = false;
+};
 
 struct GaussianMapRegistrationOptions {
   MapOptions map{0.5, 3, 4, 0.0};  ///< of the map that is made of a target cloud
@@ -30,7 +76,7 @@ struct GaussianMapRegistrationOptions {
 /// cosine) hold for each step from coarse to fine; the constructor takes them from the options. What PCL offers to
 /// choose correspondences has no effect. The kd-tree of the target is made when getFitnessScore() first asks for it.
 template <typename PointSource, typename PointTarget, typename Scalar = float>
-class GaussianMapRegistration : public pcl::Registration<PointSource, PointTarget, Scalar> {
+class GAUSSMAP_API GaussianMapRegistration : public pcl::Registration<PointSource, PointTarget, Scalar> {
   using Base = pcl::Registration<PointSource, PointTarget, Scalar>;
 
  public:
@@ -84,11 +130,11 @@ class GaussianMapRegistration : public pcl::Registration<PointSource, PointTarge
 };
 
 /// The map that a target cloud is aligned with. Throws as build() and refine().
-GaussianMapOctree buildTargetMap(const std::vector<Eigen::Vector3d>& points,
-                                 const GaussianMapRegistrationOptions& options);
+GAUSSMAP_API GaussianMapOctree buildTargetMap(const std::vector<Eigen::Vector3d>& points,
+                                              const GaussianMapRegistrationOptions& options);
 /// A rigid 4 x 4 transform as a pose. Throws std::invalid_argument for one that is none.
-Pose poseOfMatrix(const Eigen::Matrix4d& matrix);
-Eigen::Matrix4d matrixOf(const Pose& pose);
+GAUSSMAP_API Pose poseOfMatrix(const Eigen::Matrix4d& matrix);
+GAUSSMAP_API Eigen::Matrix4d matrixOf(const Pose& pose);
 
 }  // namespace gaussmap
 

@@ -13,8 +13,9 @@
 #include <utility>
 #include <vector>
 
-#include "gaussmap/segments/planar_scan.h"
+#include "gaussmap/segments/laser_scan.h"
 #include "gaussmap/segments/segment_fitter.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -22,7 +23,7 @@ namespace gaussmap {
 /// next cloud, fit() ... and map(). Points in the SENSOR frame, its pose in sensor_origin_ and sensor_orientation_, as
 /// PCL's readers fill them. Any point type with x, y, z.
 template <typename PointT>
-class PointCloudSegmentFitter : public pcl::PCLBase<PointT> {
+class GAUSSMAP_API PointCloudSegmentFitter : public pcl::PCLBase<PointT> {
  public:
   /// Throws std::invalid_argument, naming the option.
   explicit PointCloudSegmentFitter(const SegmentFitterOptions& options = {},
@@ -78,7 +79,7 @@ class PointCloudSegmentFitter : public pcl::PCLBase<PointT> {
     for (const auto index : *this->indices_) {
       const Eigen::Vector3d sensed =
           (*this->input_)[static_cast<std::size_t>(index)].getVector3fMap().template cast<double>();
-      const Eigen::Vector3d point = pose.rotation * sensed + pose.translation;
+      const Eigen::Vector3d point = pose * sensed;
       if (!point.allFinite() || (planar_.slice && (point.z() < planar_.z_min || point.z() > planar_.z_max))) continue;
       double least = tolerance;
       pcl::PointIndices* nearest = nullptr;

@@ -4,7 +4,8 @@
 #include <Eigen/Core>
 #include <cstddef>
 
-#include "gaussmap/core/point_block.h"
+#include "gaussmap/core/scans.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -15,7 +16,7 @@ struct NormalsView {
   std::size_t stride = 4;
 };
 
-struct PointNormalOptions {
+struct GAUSSMAP_API PointNormalOptions {
   int min_points = 14;  ///< a plane goes through at least so many points (if there are), on average half as many more;
                         ///< 3 ... 1000
   Eigen::Vector3d viewpoint = Eigen::Vector3d::Zero();  ///< normals look towards it [m]
@@ -33,7 +34,7 @@ struct PointNormalOptions {
 /// Cells are not split below 2^-21 of the extent of the cloud; the outermost hundredth of the points at either end of
 /// an axis does not count for that extent if it lies far off.
 /// Throws std::invalid_argument, naming the option, and for 2^31 points or more.
-std::size_t pointNormals(const PointsView& surface, const PointsView& queries, const NormalsView& normals,
-                         const PointNormalOptions& options = {});
+GAUSSMAP_API std::size_t pointNormals(const PointsView& surface, const PointsView& queries, const NormalsView& normals,
+                                      const PointNormalOptions& options = {});
 
 }  // namespace gaussmap

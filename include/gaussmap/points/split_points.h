@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gaussmap/core/gaussian.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -22,8 +23,8 @@ enum class PartPoint {
 };
 
 struct SplitPointsOptions {
-  std::size_t most_parts = 10000;  ///< >= 1
-  double max_error = 0.0;          ///< > 0: as few parts as keep 95 % of the points within it [m]; 0: most_parts
+  std::size_t max_parts = 10000;  ///< >= 1
+  double max_error = 0.0;         ///< > 0: as few parts as keep 95 % of the points within it [m]; 0: max_parts
   SplitRule rule = SplitRule::Distance;
   PartPoint part_point = PartPoint::Mean;  ///< what distances are measured from
   int rounds = 3;                          ///< of k-means over the points after the splitting, Distance only, >= 0
@@ -45,6 +46,6 @@ struct PointParts {
 /// and what serves the largest. A few rounds of k-means (Lloyd) then move every point to the nearest mean. Equal points
 /// stay together. O(n log(parts)).
 /// Points must be finite and fewer than 2^32. Throws std::invalid_argument, naming the option or the point.
-PointParts splitPoints(const std::vector<Vector<3>>& points, const SplitPointsOptions& options = {});
+GAUSSMAP_API PointParts splitPoints(const std::vector<Vector<3>>& points, const SplitPointsOptions& options = {});
 
 }  // namespace gaussmap

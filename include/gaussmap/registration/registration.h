@@ -7,6 +7,7 @@
 
 #include "gaussmap/core/pose.h"
 #include "gaussmap/map/gaussian_map.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -14,16 +15,16 @@ struct RegistrationOptions {
   /// The scan becomes Gaussians of cells of this side [m], > 0, and of four times that for the coarse scales; 0: as the
   /// map's finest cells.
   double resolution = 0.0;
-  std::size_t most_gaussians = 4000;  ///< of the scan that are used at a step, evenly chosen, >= 1
-  int max_iterations = 30;            ///< of each step from coarse to fine, >= 1
+  std::size_t max_gaussians = 4000;  ///< of the scan that are used at a step, evenly chosen, >= 1
+  int max_iterations = 30;           ///< of each step from coarse to fine, >= 1
   double kernel = 3.0;        ///< residuals of this many standard deviations count half as much as they would, > 0
   double translation = 5e-4;  ///< a step is done when an iteration moves less than this [m] ...
   double rotation = 5e-5;     ///< ... and turns less than this [rad]
   double degenerate = 0.01;   ///< least over largest information of a direction below which a pose is degenerate
-  int threads = 1;            ///< 0 = all; never shows in the result
+  int threads = 0;            ///< 0 = all cores; does not change the result
 };
 
-struct RegistrationResult {
+struct GAUSSMAP_API RegistrationResult {
   Pose pose;  ///< scan frame to map frame
   /// Of (x, y, z [m], rotation vector about the sensor [rad]), map axes; of the last iteration. Symmetric positive
   /// definite, unless nothing of the map tells anything of the pose: then it is zero.
@@ -45,12 +46,12 @@ struct RegistrationResult {
 ///
 /// `points` [m, scan frame]; NaN and infinite ones are left out. Throws std::invalid_argument, naming the option, or
 /// for an empty map or a guess with a fault.
-RegistrationResult registerScan(const std::vector<Eigen::Vector3d>& points, const GaussianMap<3>& map,
-                                const Pose& guess = {}, const RegistrationOptions& options = {});
+GAUSSMAP_API RegistrationResult registerScan(const std::vector<Eigen::Vector3d>& points, const GaussianMap<3>& map,
+                                             const Pose& guess = {}, const RegistrationOptions& options = {});
 
 /// The same with the Gaussians of another map in place of a scan: distribution to distribution. The pose moves `source`
 /// onto `map`.
-RegistrationResult registerMap(const GaussianMap<3>& source, const GaussianMap<3>& map, const Pose& guess = {},
-                               const RegistrationOptions& options = {});
+GAUSSMAP_API RegistrationResult registerMap(const GaussianMap<3>& source, const GaussianMap<3>& map,
+                                            const Pose& guess = {}, const RegistrationOptions& options = {});
 
 }  // namespace gaussmap

@@ -10,6 +10,7 @@
 #include "gaussmap/segments/segment_map.h"
 #include "gaussmap/segments/sensor_model.h"
 #include "gaussmap/segments/utility.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 namespace detail {
@@ -47,7 +48,7 @@ struct SegmentOptimisationOptions {
   int rounds = 2;               ///< of merging, filling and removing, >= 0
 };
 
-struct SegmentFitterOptions {
+struct GAUSSMAP_API SegmentFitterOptions {
   /// Leal 2000 as printed: particles, with a limit per segment; no pruning, no optimisation of the whole map. The
   /// utility is a parameter of its own; the paper's is eq. [4]:
   ///   SegmentFitter fitter(SegmentFitterOptions::leal2000(), std::make_shared<ViewpointInvariantUtility>());
@@ -89,7 +90,7 @@ struct SegmentStatistics {
 /// - map() optimises all segments together (SegmentFitterOptions::optimise).
 /// SegmentFitterOptions::leal2000() with a ViewpointInvariantUtility is the paper as printed.
 /// Memory grows with the map, not with the scans. One thread; the same scans and seed give the same map.
-class SegmentFitter {
+class GAUSSMAP_API SegmentFitter {
  public:
   /// Without a utility: DescriptionLengthUtility. Throws std::invalid_argument, naming the option and what is required.
   explicit SegmentFitter(const SegmentFitterOptions& options = {}, std::shared_ptr<SegmentUtility> utility = {});

@@ -5,13 +5,14 @@
 #include <vector>
 
 #include "gaussmap/core/gaussian.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
 /// A straight piece of wall as a planar laser sees it, map frame. It is oriented: seen from start towards end, the free
 /// space that it was observed from is on the left. The two faces of a thin wall are two segments.
 /// Leal, Scheding, Dissanayake 2000, sec. 3.
-struct Segment {
+struct GAUSSMAP_API Segment {
   Vector<2> start{0.0, 0.0};  ///< end points [m]
   Vector<2> end{0.0, 0.0};
   double normal_variance = 0.0;  ///< sigma_n^2, variance of the evidence across the line [m^2], eq. [2]
@@ -31,7 +32,7 @@ struct Segment {
 
 /// A 2-D map of line segments linked into chains. Each segment is in exactly one chain; the end of a segment is the
 /// start of the next one of its chain where their lines meet near both, else a short way from it.
-struct SegmentMap {
+struct GAUSSMAP_API SegmentMap {
   struct Chain {
     std::size_t first = 0;  ///< segments [first, last) of the map, in the order of the chain
     std::size_t last = 0;

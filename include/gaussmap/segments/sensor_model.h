@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gaussmap/segments/laser_scan.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -24,7 +25,7 @@ struct ObservationPoint {
 
 /// Where a beam may have ended: the noise of range, bearing and pose propagated through h of Leal 2000 eq. [1] without
 /// linearising it.
-class ObservationModel {
+class GAUSSMAP_API ObservationModel {
  public:
   virtual ~ObservationModel() = default;
   /// Overwrites `points` with the possible ends of one beam that returned, the same number for every beam of a scan.
@@ -34,7 +35,7 @@ class ObservationModel {
 };
 
 /// M random samples each, the paper's particles (sec. 3.1). The same seed and number give the same particles.
-class SampledObservations : public ObservationModel {
+class GAUSSMAP_API SampledObservations : public ObservationModel {
  public:
   /// Throws std::invalid_argument if samples < 1 or the noise is negative or not finite.
   explicit SampledObservations(const SensorNoise& noise = {}, int samples = 30, std::uint64_t seed = 1);
@@ -49,7 +50,7 @@ class SampledObservations : public ObservationModel {
 
 /// Points with the mean and covariance of infinitely many samples, by the unscented transform of (range, bearing, x, y,
 /// heading), Julier and Uhlmann 1997 with kappa = 0: ten points, four if the pose is exact.
-class UnscentedObservations : public ObservationModel {
+class GAUSSMAP_API UnscentedObservations : public ObservationModel {
  public:
   /// Throws std::invalid_argument if the noise is negative or not finite.
   explicit UnscentedObservations(const SensorNoise& noise = {});

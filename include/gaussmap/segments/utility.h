@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gaussmap/core/gaussian.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -21,7 +22,7 @@ struct SegmentGoals {
 };
 
 /// Votes for what happens to a segment; the highest wins, Leal 2000 eq. [3]. Equal votes: nothing happens.
-class SegmentUtility {
+class GAUSSMAP_API SegmentUtility {
  public:
   virtual ~SegmentUtility() = default;
   /// U_split: for `whole` to become `first` and `second`, which are what its best break point leaves.
@@ -46,7 +47,7 @@ struct ViewpointInvariantOptions {
   double merge_ratio = 0.5;       ///< alpha, merge where the variance is at most alpha sigma_th^2, in [0, 1)
 };
 
-class ViewpointInvariantUtility : public SegmentUtility {
+class GAUSSMAP_API ViewpointInvariantUtility : public SegmentUtility {
  public:
   /// Throws std::invalid_argument, naming the option.
   explicit ViewpointInvariantUtility(const ViewpointInvariantOptions& options = {});
@@ -70,7 +71,7 @@ struct ViewpointDependentOptions {
 
 /// The paper's text says that the map reverts where the observer has left, its equation does not: here two segments
 /// outside the field that together are shorter than l_min, which only a visit can have split, are merged again.
-class ViewpointDependentUtility : public SegmentUtility {
+class GAUSSMAP_API ViewpointDependentUtility : public SegmentUtility {
  public:
   /// Throws std::invalid_argument, naming the option.
   explicit ViewpointDependentUtility(const ViewpointDependentOptions& options = {});
@@ -97,7 +98,7 @@ struct DescriptionLengthOptions {
   double segment_cost = 3.0;  ///< kappa [nat], >= 0
 };
 
-class DescriptionLengthUtility : public SegmentUtility {
+class GAUSSMAP_API DescriptionLengthUtility : public SegmentUtility {
  public:
   /// Throws std::invalid_argument, naming the option.
   explicit DescriptionLengthUtility(const DescriptionLengthOptions& options = {});
@@ -110,7 +111,7 @@ class DescriptionLengthUtility : public SegmentUtility {
 };
 
 /// A utility made of functions; those that are empty never win.
-struct UserUtility : public SegmentUtility {
+struct GAUSSMAP_API UserUtility : public SegmentUtility {
   using Split = std::function<double(const SegmentGoals& whole, const SegmentGoals& first, const SegmentGoals& second)>;
   using Merge = std::function<double(const SegmentGoals& first, const SegmentGoals& second, const SegmentGoals& whole)>;
   using Nothing = std::function<double(const SegmentGoals& segment)>;
@@ -124,7 +125,7 @@ struct UserUtility : public SegmentUtility {
 };
 
 /// The weighted sum of other utilities' votes.
-class CombinedUtility : public SegmentUtility {
+class GAUSSMAP_API CombinedUtility : public SegmentUtility {
  public:
   struct Part {
     std::shared_ptr<SegmentUtility> utility;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <variant>
 #include <vector>
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -30,17 +31,17 @@ struct Pixel {
   int column = 0;
 };
 
-int rowsOf(const Projection& projection);
-int columnsOf(const Projection& projection);
+GAUSSMAP_API int rowsOf(const Projection& projection);
+GAUSSMAP_API int columnsOf(const Projection& projection);
 /// True if the last column is the first one's neighbour.
-bool wraps(const Projection& projection);
+GAUSSMAP_API bool wraps(const Projection& projection);
 
 /// The pixel that a point [m, sensor frame] is seen in; nothing outside the field of view, or for a point that is no
 /// return.
-std::optional<Pixel> pixelOf(const Projection& projection, const Eigen::Vector3d& point);
+GAUSSMAP_API std::optional<Pixel> pixelOf(const Projection& projection, const Eigen::Vector3d& point);
 
 /// Unit vector through the middle of a pixel, sensor frame. The pixel's row lies in the image, its column anywhere.
-Eigen::Vector3d directionOf(const Projection& projection, Pixel pixel);
+GAUSSMAP_API Eigen::Vector3d directionOf(const Projection& projection, Pixel pixel);
 
 /// Pixels that a ball may be seen in: whole rows and columns, both ends included. With `wraps`, columns may run below
 /// 0 or past the last one.
@@ -52,22 +53,23 @@ struct PixelBox {
 
 /// A box of pixels that holds every pixel any point of the ball is seen in; empty if all of it is out of view.
 /// centre [m, sensor frame], radius [m] >= 0.
-PixelBox pixelsOf(const Projection& projection, const Eigen::Vector3d& centre, double radius);
+GAUSSMAP_API PixelBox pixelsOf(const Projection& projection, const Eigen::Vector3d& centre, double radius);
 
 /// Throws std::invalid_argument, naming the value, if a projection is not usable, or has more than 2^28 pixels.
-void checkProjection(const Projection& projection);
+GAUSSMAP_API void checkProjection(const Projection& projection);
 
 /// Rows and columns of a spinning lidar from one of its scans [m, sensor frame; non-finite points and points at the
 /// sensor are left out]. Rows are the rings where elevations gather in rings, else as high as the usual distance
 /// between points one above the other. A column is two steps between neighbours of a ring wide, so that few pixels
 /// of a surface stay empty. A scan within one plane gets one row. Nothing if there are fewer than three points.
-std::optional<SphericalProjection> findSphericalProjection(const std::vector<Eigen::Vector3d>& points);
+GAUSSMAP_API std::optional<SphericalProjection> findSphericalProjection(const std::vector<Eigen::Vector3d>& points);
 
 /// The camera that an organised cloud was seen with (row by row, `columns` points a row, NaN where there is no depth),
 /// by least squares; nothing if no camera explains the points to within a pixel.
-std::optional<PlanarProjection> findPlanarProjection(const std::vector<Eigen::Vector3d>& points, int columns);
+GAUSSMAP_API std::optional<PlanarProjection> findPlanarProjection(const std::vector<Eigen::Vector3d>& points,
+                                                                  int columns);
 
 /// The camera of an organised cloud (columns > 0) if there is one, else the lidar.
-std::optional<Projection> findProjection(const std::vector<Eigen::Vector3d>& points, int columns = 0);
+GAUSSMAP_API std::optional<Projection> findProjection(const std::vector<Eigen::Vector3d>& points, int columns = 0);
 
 }  // namespace gaussmap

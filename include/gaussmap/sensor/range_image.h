@@ -7,11 +7,12 @@
 #include <vector>
 
 #include "gaussmap/sensor/projection.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
 /// What the beams of one pixel measured, ranges from the sensor [m]. Empty (no beam came back): nearest is infinite.
-struct PixelRanges {
+struct GAUSSMAP_API PixelRanges {
   float nearest = std::numeric_limits<float>::infinity();
   float farthest = 0.0f;
   bool empty() const { return nearest > farthest; }
@@ -19,7 +20,7 @@ struct PixelRanges {
 
 /// One scan as its sensor saw it: per pixel the smallest and the largest range. That a pixel is empty says nothing
 /// about the space in it (black, wet and far things give no return either).
-class RangeImage {
+class GAUSSMAP_API RangeImage {
  public:
   /// An image without any return. Throws std::invalid_argument if the projection is not usable.
   explicit RangeImage(Projection projection);

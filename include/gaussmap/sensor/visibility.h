@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "gaussmap/sensor/range_image.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -28,7 +29,8 @@ struct VisibilityOptions {
 
 /// The visibility of a point [m, sensor frame] by the 3 x 3 pixels around it (1 x 3 in an image of one row), of which
 /// at least half must have returns. One pixel alone would free thin objects and edges: its beam may pass beside them.
-Visibility visibilityOf(const RangeImage& image, const Eigen::Vector3d& point, const VisibilityOptions& options = {});
+GAUSSMAP_API Visibility visibilityOf(const RangeImage& image, const Eigen::Vector3d& point,
+                                     const VisibilityOptions& options = {});
 
 /// What all scans said about one cell or cluster: enough to explain why it was kept or deleted.
 struct Evidence {
@@ -48,9 +50,10 @@ struct Evidence {
 /// How much one scan changes the log-odds that something is there. The defaults are those of OctoMap: probabilities of
 /// 0.7 and 0.4. A static cell is kept if 32 % of the scans that see its place hit it.
 struct OccupancyOptions {
-  double hit = 0.85;   ///< added by a scan that measured a point there, > 0
-  double miss = 0.4;   ///< taken off by a scan that passed through, > 0
-  double most = 10.0;  ///< o_max: on line, log-odds stay within [-most, most], > 0 (Yguel 2009, sec. 4.1)
+  double hit = 0.85;  ///< added by a scan that measured a point there, > 0
+  double miss = 0.4;  ///< taken off by a scan that passed through, > 0
+  double max_log_odds =
+      10.0;  ///< o_max: on line, log-odds stay within [-max_log_odds, max_log_odds], > 0 (Yguel 2009, sec. 4.1)
 };
 
 /// Log-odds of all scans together, without bounds, so the result does not depend on the order of the scans.

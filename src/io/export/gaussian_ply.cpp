@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/io/export/gaussian_ply.h"
+#include "gaussmap/io/export/map_export.h"
 
 #include <algorithm>
 #include <charconv>
@@ -160,8 +160,7 @@ void writeEllipsoids(WriteBuffer& buffer, const Items& items, double sigma) {
 
 }  // namespace
 
-std::size_t writeGaussianPly(const std::filesystem::path& path, const GaussianMap<3>& map,
-                             const GaussianPlyOptions& options) {
+std::size_t savePly(const std::filesystem::path& path, const GaussianMap<3>& map, const GaussianPlyOptions& options) {
   require(options.sigma > 0.0 && std::isfinite(options.sigma), "sigma", options.sigma, "must be positive and finite");
   const Items items(map, options);
   AtomicFile file(path);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/ellipsoid_pose.h"
-#include "gaussmap/io/export/gaussian_table.h"
+#include "gaussmap/io/export/map_export.h"
 #include "io/export/table_rows.h"
 #include "io/files/write_buffer.h"
 
@@ -88,7 +88,7 @@ std::vector<std::int64_t> parentRows(const GaussianMap<3>& map, const std::vecto
 
 }  // namespace
 
-std::size_t writeGaussianVtp(const std::filesystem::path& path, const GaussianMap<3>& map, std::optional<int> scale) {
+std::size_t saveVtp(const std::filesystem::path& path, const GaussianMap<3>& map, std::optional<int> scale) {
   const std::vector<GaussianId> rows = tableRows(map, scale);
   const std::vector<std::int64_t> parents = parentRows(map, rows, !scale);
   const auto gaussian = [&](std::size_t row) { return map.gaussian(rows[row].index, rows[row].scale); };

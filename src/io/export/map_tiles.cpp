@@ -154,7 +154,7 @@ bool isPlainFinest(const GaussianMap<3>& map, const GaussianRecords& all) {
 
 }  // namespace
 
-WrittenTiles saveTiles(const GaussianMap<3>& map, const fs::path& folder, const TilesOptions& options) {
+WrittenTiles saveTiles(const fs::path& folder, const GaussianMap<3>& map, const TilesOptions& options) {
   require(options.size >= 1, "size", options.size, "must be at least 1 m");
   const std::map<Corner, GaussianRecords> squares = bySquare(toRecords(map, options.scale), options.size);
   PartFolder part(folder);
@@ -167,7 +167,7 @@ WrittenTiles saveTiles(const GaussianMap<3>& map, const fs::path& folder, const 
   WrittenTiles written;
   for (const auto& [corner, records] : squares) {
     const std::string name = "tile_" + std::to_string(corner[0]) + "_" + std::to_string(corner[1]) + ".pcd";
-    writeRecordsPcd(records, part.path() / name);
+    saveRecordsPcd(part.path() / name, records);
     index << name << ": [" << corner[0] << ", " << corner[1] << "]\n";
     ++written.tiles;
     written.gaussians += records.records.size();
@@ -185,7 +185,7 @@ GaussianMap<3> loadTiles(const fs::path& folder) {
   const Index index = readIndex(path);
   GaussianRecords all;
   for (const std::string& file : index.files) {
-    GaussianRecords tile = readRecordsPcd(folder / file);
+    GaussianRecords tile = loadRecordsPcd(folder / file);
     if (!tile.origin.isZero()) throw FileError(folder / file, "is no tile: its VIEWPOINT shifts it");
     all.records.insert(all.records.end(), tile.records.begin(), tile.records.end());
   }

@@ -58,7 +58,7 @@ void write(const std::filesystem::path& path, const std::string& content) {
 
 }  // namespace
 
-void writeSegmentGeoJson(const std::filesystem::path& path, const SegmentMap& map) {
+void saveSegmentsGeoJson(const std::filesystem::path& path, const SegmentMap& map) {
   checkSegments(map);
   std::string features;
   forEachSegment(map, [&](const Segment& segment, std::size_t chain, bool closed) {
@@ -67,7 +67,7 @@ void writeSegmentGeoJson(const std::filesystem::path& path, const SegmentMap& ma
   write(path, "{\"type\":\"FeatureCollection\",\"features\":[" + features + "\n]}\n");
 }
 
-void writeSegmentCsv(const std::filesystem::path& path, const SegmentMap& map) {
+void saveSegmentsCsv(const std::filesystem::path& path, const SegmentMap& map) {
   checkSegments(map);
   std::string lines =
       "chain,closed,start_x,start_y,end_x,end_y,length,normal_variance,offset_variance,offset_angle_covariance,"

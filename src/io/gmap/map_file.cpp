@@ -39,7 +39,7 @@ Tile<D> readTiles(const Database& database, int s, const MapOptions& options) {
 }  // namespace
 
 template <int D>
-GaussianMap<D> loadMap(const std::filesystem::path& path) {
+GaussianMap<D> load(const std::filesystem::path& path) {
   const Database database = openMap(path);
   const MapMetadata entries = readEntries(database);
   const MapOptions options = readOptions<D>(path, entries);
@@ -75,7 +75,7 @@ MapFileSize mapFileSize(const std::filesystem::path& path) {
   return size;
 }
 
-template GaussianMap<2> loadMap<2>(const std::filesystem::path&);
-template GaussianMap<3> loadMap<3>(const std::filesystem::path&);
+template GaussianMap<2> load<2>(const std::filesystem::path&);
+template GaussianMap<3> load(const std::filesystem::path&);
 
 }  // namespace gaussmap

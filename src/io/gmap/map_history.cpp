@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/io/gmap/map_history.h"
+#include "gaussmap/io/gmap/map_file.h"
 
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -103,10 +103,10 @@ void recordCurves(MapMetadata& metadata, const std::vector<ErrorCurve>& curves) 
 }
 
 template <int D>
-void saveMap(const RefineResult<D>& result, const std::filesystem::path& path, MapMetadata metadata,
-             const SaveOptions& options) {
+void save(const std::filesystem::path& path, const RefineResult<D>& result, MapMetadata metadata,
+          const SaveOptions& options) {
   recordCurves(metadata, result.curves);
-  saveMap<D>(result.map, path, metadata, options);
+  save<D>(path, result.map, metadata, options);
 }
 
 template <int D>
@@ -120,8 +120,8 @@ MaxBytes maxFileBytes(std::uintmax_t bytes, const MapMetadata& metadata, const S
           [metadata, options](const RefineResult<3>& result) { return savedSize<3>(result, metadata, options); }};
 }
 
-#define GAUSSMAP_INSTANTIATE(D)                                                                                    \
-  template void saveMap<D>(const RefineResult<D>&, const std::filesystem::path&, MapMetadata, const SaveOptions&); \
+#define GAUSSMAP_INSTANTIATE(D)                                                                                 \
+  template void save<D>(const std::filesystem::path&, const RefineResult<D>&, MapMetadata, const SaveOptions&); \
   template std::uintmax_t savedSize<D>(const RefineResult<D>&, MapMetadata, const SaveOptions&);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)

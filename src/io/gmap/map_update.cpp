@@ -39,7 +39,7 @@ struct Header {
   Header(const std::filesystem::path& path, const Database& database) : entries(readEntries(database)) {
     options = readOptions<D>(path, entries);
     if (entries.count("grows") + entries.count("occupancy") == 0) {  // of the first programs: only the tiles tell
-      const GaussianMap<D> map = loadMap<D>(path);
+      const GaussianMap<D> map = load<D>(path);
       entries["grows"] = map.canGrow() ? "1" : "0";
       entries["occupancy"] = map.hasOccupancy() ? "1" : "0";
     }

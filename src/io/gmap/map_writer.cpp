@@ -65,8 +65,8 @@ void writeMap(Database& database, const GaussianMap<D>& map, const MapMetadata& 
 }  // namespace
 
 template <int D>
-void saveMap(const GaussianMap<D>& map, const std::filesystem::path& path, const MapMetadata& metadata,
-             const SaveOptions& options) {
+void save(const std::filesystem::path& path, const GaussianMap<D>& map, const MapMetadata& metadata,
+          const SaveOptions& options) {
   std::error_code error;
   if (!options.overwrite && std::filesystem::exists(path, error)) throw FileError(path, "exists already and is kept");
   AtomicFile file(path);
@@ -89,8 +89,8 @@ std::uintmax_t savedSize(const GaussianMap<D>& map, const MapMetadata& metadata,
   return pragma("page_count") * pragma("page_size");
 }
 
-template void saveMap<2>(const GaussianMap<2>&, const std::filesystem::path&, const MapMetadata&, const SaveOptions&);
-template void saveMap<3>(const GaussianMap<3>&, const std::filesystem::path&, const MapMetadata&, const SaveOptions&);
+template void save<2>(const std::filesystem::path&, const GaussianMap<2>&, const MapMetadata&, const SaveOptions&);
+template void save(const std::filesystem::path&, const GaussianMap<3>&, const MapMetadata&, const SaveOptions&);
 template std::uintmax_t savedSize<2>(const GaussianMap<2>&, const MapMetadata&, const SaveOptions&);
 template std::uintmax_t savedSize<3>(const GaussianMap<3>&, const MapMetadata&, const SaveOptions&);
 

@@ -11,13 +11,13 @@
 
 namespace gaussmap::detail {
 
-/// Decoded tiles, the least recently used of which go when they take more than `most_bytes`.
+/// Decoded tiles, the least recently used of which go when they take more than `max_bytes`.
 template <int D>
 class TileCache {
  public:
   using Entry = std::shared_ptr<const Tile<D>>;
 
-  explicit TileCache(std::size_t most_bytes) : most_bytes_(most_bytes) {}
+  explicit TileCache(std::size_t max_bytes) : most_bytes_(max_bytes) {}
 
   /// nullptr if the tile is not here.
   Entry find(int scale, const CellKey<D>& address) {

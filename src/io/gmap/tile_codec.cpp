@@ -46,7 +46,7 @@ std::int64_t tileOrigin(const TileAddress<D>& address, std::size_t axis) {
 
 template <int D>
 void checkMoments(const CellMoments<D>& moments) {
-  if (moments.count <= 0 || moments.count > CellMoments<D>::kMostPoints)
+  if (moments.count <= 0 || moments.count > CellMoments<D>::kMaxPoints)
     throw std::runtime_error("a cell with an impossible count");
   for (std::int64_t sum : moments.sum)
     if (std::abs(static_cast<double>(sum)) > 0x1.0p15 * static_cast<double>(moments.count))

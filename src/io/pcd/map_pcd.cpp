@@ -30,7 +30,7 @@ Eigen::Vector3d originOf(const PcdHeader& header) {
 
 }  // namespace
 
-void writeRecordsPcd(const GaussianRecords& all, const std::filesystem::path& path) {
+void saveRecordsPcd(const std::filesystem::path& path, const GaussianRecords& all) {
   const GaussianRecord empty{};
   const GaussianRecord& first = all.records.empty() ? empty : all.records.front();
   constexpr std::size_t kStride = sizeof(GaussianRecord);
@@ -46,13 +46,13 @@ void writeRecordsPcd(const GaussianRecords& all, const std::filesystem::path& pa
            viewpoint);
 }
 
-void saveMapPcd(const GaussianMap<3>& map, const std::filesystem::path& path, const ExportOptions& options) {
+void savePcd(const std::filesystem::path& path, const GaussianMap<3>& map, const ExportOptions& options) {
   std::error_code error;
   if (!options.overwrite && std::filesystem::exists(path, error)) throw FileError(path, "exists already and is kept");
-  writeRecordsPcd(toRecords(map, options.scale), path);
+  saveRecordsPcd(path, toRecords(map, options.scale));
 }
 
-GaussianRecords readRecordsPcd(const std::filesystem::path& path) {
+GaussianRecords loadRecordsPcd(const std::filesystem::path& path) {
   const PcdReader reader(path);
   if (reader.header().find("covariance") == nullptr)
     throw FileError(path, "is a cloud of points, not of Gaussians: its fields lack 'covariance'");
@@ -82,8 +82,8 @@ GaussianRecords readRecordsPcd(const std::filesystem::path& path) {
   }
 }
 
-GaussianMap<3> loadMapPcd(const std::filesystem::path& path) {
-  const GaussianRecords all = readRecordsPcd(path);
+GaussianMap<3> loadPcd(const std::filesystem::path& path) {
+  const GaussianRecords all = loadRecordsPcd(path);
   try {
     return fromRecords(all);
   } catch (const std::logic_error& error) {
@@ -109,11 +109,11 @@ bool isMap(const std::filesystem::path& path) {
   }
 }
 
-GaussianMap<3> loadAnyMap(const std::filesystem::path& path, MapMetadata* metadata) {
+GaussianMap<3> loadAny(const std::filesystem::path& path, MapMetadata* metadata) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) throw FileError(path, "does not exist");
-  if (!isGmap(path) && (path.extension() != ".gmap" || isMap(path))) return loadMapPcd(path);
-  GaussianMap<3> map = loadMap<3>(path);
+  if (!isGmap(path) && (path.extension() != ".gmap" || isMap(path))) return loadPcd(path);
+  GaussianMap<3> map = load(path);
   if (metadata != nullptr) *metadata = loadMetadata(path);
   return map;
 }

@@ -20,7 +20,7 @@ using namespace detail;
 namespace {
 
 constexpr std::size_t kBytesAtOnce = std::size_t{1} << 20;
-constexpr std::size_t kMostPoints = 0xFFFFFFFFu;  // WIDTH is read into 32 bits by everybody
+constexpr std::size_t kMaxPoints = 0xFFFFFFFFu;  // WIDTH is read into 32 bits by everybody
 
 std::string header(std::size_t width, std::size_t height, const std::vector<PcdOutput>& fields, const Pose& viewpoint) {
   std::ostringstream text;
@@ -65,7 +65,7 @@ void writePcd(const std::filesystem::path& path, std::size_t points, const std::
   checkPcdFields(fields);
   for (const PcdOutput& field : fields)
     if (!field.data && points > 0) throw std::invalid_argument("PCD field '" + field.name + "' has no data");
-  if (points > kMostPoints) throw std::invalid_argument("a PCD file holds at most 2^32 - 1 points");
+  if (points > kMaxPoints) throw std::invalid_argument("a PCD file holds at most 2^32 - 1 points");
   if (width > 0 && points % width != 0)
     throw std::invalid_argument(std::to_string(points) + " points do not fill rows of " + std::to_string(width));
   const Pose pose = viewpoint.value_or(Pose());

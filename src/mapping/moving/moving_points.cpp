@@ -39,7 +39,7 @@ struct MovingPoints::State {
   std::optional<std::size_t> cellOf(const Scan& scan, std::size_t i, Eigen::Vector3d& in_map) const {
     const Eigen::Vector3d& point = scan.points[i];
     if (!isReturn(point) || point.norm() > options.evidence.max_range) return std::nullopt;
-    in_map = scan.pose.rotation * point + scan.pose.translation;
+    in_map = scan.pose * point;
     return map.find(map.grid().keyOf(in_map), 0);
   }
 

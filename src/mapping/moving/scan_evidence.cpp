@@ -24,7 +24,7 @@ std::vector<std::size_t> cellsOf(const Scan& scan, const GaussianMap<3>& map, do
   std::vector<std::size_t> cells;
   for (const Eigen::Vector3d& point : scan.points) {
     if (!isReturn(point) || point.norm() > max_range) continue;
-    const CellKey<3> key = map.grid().keyOf(scan.pose.rotation * point + scan.pose.translation);
+    const CellKey<3> key = map.grid().keyOf(scan.pose * point);
     if (!cells.empty() && map.scale(0).keys[cells.back()] == key) continue;
     if (const auto cell = map.find(key, 0)) cells.push_back(*cell);
   }

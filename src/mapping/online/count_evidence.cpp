@@ -5,7 +5,7 @@
 
 #include "core/parallel.h"
 #include "core/pi.h"
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "mapping/online/online_state.h"
 
 namespace gaussmap::detail {

@@ -42,7 +42,7 @@ class Nearest {
 
 /// eps(o), eq. (5).
 double rateOf(double log_odds, const OnlineOptions& options) {
-  const double most = options.occupancy.most;
+  const double most = options.occupancy.max_log_odds;
   return (options.slowest_rate - options.fastest_rate) / (2.0 * most) * (log_odds + most) + options.fastest_rate;
 }
 
@@ -164,7 +164,7 @@ void restoreCell(OnlineCells<D>& cells, const RemovedCluster<D>& removed, const 
   OnlineCluster<D> back;
   back.gaussian = removed.gaussian;
   back.gaussian.mean -= grid.centre(removed.key, 0);
-  back.log_odds = static_cast<float>(options.occupancy.most);  // else the next miss would delete it again
+  back.log_odds = static_cast<float>(options.occupancy.max_log_odds);  // else the next miss would delete it again
   back.evidence = removed.evidence;
   const bool is_new = cells.cell(cell, 0).clusters.empty();
   if (is_new) cells.addCluster(cell, 0, back);

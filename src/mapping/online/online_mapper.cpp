@@ -24,7 +24,7 @@ void checkOptions(const OnlineOptions& options) {
           "must be above 0 and at most 1");
   require(options.fastest_rate >= options.slowest_rate && options.fastest_rate <= 1.0, "fastest_rate",
           options.fastest_rate, "must be at least slowest_rate and at most 1");
-  require(options.occupancy.most > 0.0, "most", options.occupancy.most, "must be positive");
+  require(options.occupancy.max_log_odds > 0.0, "max_log_odds", options.occupancy.max_log_odds, "must be positive");
   require(options.occupancy_every >= 1, "occupancy_every", options.occupancy_every, "must be at least 1");
   require(options.look_back >= 0, "look_back", options.look_back, "must not be negative");
   require(options.refine_every >= 0, "refine_every", options.refine_every, "must not be negative");
@@ -79,7 +79,7 @@ OnlineOptions OnlineOptions::yguel2009(int dimensions) {
   options.learning_rate = LearningRate::Occupancy;
   options.slowest_rate = 5e-4;
   options.fastest_rate = 5e-2;
-  options.occupancy.most = 10.0;
+  options.occupancy.max_log_odds = 10.0;
   options.samples = OccupancySamples::Random;
   options.occupancy_every = dimensions == 2 ? 1 : 3;
   options.look_back = 0;  // new cells are not tested against earlier scans

@@ -117,12 +117,13 @@ template <int D>
 void hit(OnlineCluster<D>& cluster, std::uint32_t scan, const OccupancyOptions& options) {
   if (cluster.evidence.hits > 0 && cluster.evidence.last_hit == scan) return;
   cluster.evidence.hit(scan);
-  cluster.log_odds = static_cast<float>(std::min(options.most, double(cluster.log_odds) + options.hit));
+  cluster.log_odds = static_cast<float>(std::min(options.max_log_odds, double(cluster.log_odds) + options.hit));
 }
 template <int D>
 void miss(OnlineCluster<D>& cluster, double share, const OccupancyOptions& options) {
   if (share > 0.5) cluster.evidence.miss();
-  cluster.log_odds = static_cast<float>(std::max(-options.most, double(cluster.log_odds) - share * options.miss));
+  cluster.log_odds =
+      static_cast<float>(std::max(-options.max_log_odds, double(cluster.log_odds) - share * options.miss));
 }
 
 }  // namespace gaussmap::detail

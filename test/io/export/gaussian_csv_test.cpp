@@ -3,7 +3,7 @@
 
 #include <sstream>
 
-#include "gaussmap/io/export/gaussian_table.h"
+#include "gaussmap/io/export/map_export.h"
 #include "gaussmap/mapping/build.h"
 #include "io/files/file_contents.h"
 #include "io/files/temporary_directory.h"
@@ -39,7 +39,7 @@ TEST(GaussianCsv, GivesBackEveryNumberOfTheMapToTheLastBitAlsoFarAway) {
   for (std::size_t i = 0; i < map.gaussianCount(0); ++i) log_odds.push_back(0.1f * static_cast<float>(i % 50));
   map = withOccupancy<3>(map, log_odds);
   const TemporaryDirectory directory;
-  const std::size_t count = writeGaussianCsv(directory.path() / "map.csv", map);
+  const std::size_t count = saveCsv(directory.path() / "map.csv", map);
   std::string names;
   const std::vector<Row> rows = rowsOf(contentsOf(directory.path() / "map.csv"), &names);
   EXPECT_EQ(names,
@@ -63,11 +63,11 @@ TEST(GaussianCsv, GivesBackEveryNumberOfTheMapToTheLastBitAlsoFarAway) {
 TEST(GaussianCsv, CanBeOneScaleAndRefusesOneThatIsNotThere) {
   const GaussianMap<3> map = build<3>(randomCloud<3>(300, 5), {0.25, 4, 2, 0.0});
   const TemporaryDirectory directory;
-  EXPECT_EQ(writeGaussianCsv(directory.path() / "map.csv", map, 1), map.gaussianCount(1));
+  EXPECT_EQ(saveCsv(directory.path() / "map.csv", map, 1), map.gaussianCount(1));
   std::string names;
   for (const Row& row : rowsOf(contentsOf(directory.path() / "map.csv"), &names)) EXPECT_EQ(row[0], 1.0);
-  EXPECT_THROW(writeGaussianCsv(directory.path() / "b.csv", map, 2), std::out_of_range);
-  EXPECT_THROW(writeGaussianVtp(directory.path() / "b.vtp", map, -1), std::out_of_range);
+  EXPECT_THROW(saveCsv(directory.path() / "b.csv", map, 2), std::out_of_range);
+  EXPECT_THROW(saveVtp(directory.path() / "b.vtp", map, -1), std::out_of_range);
   EXPECT_FALSE(std::filesystem::exists(directory.path() / "b.csv"));
 }
 

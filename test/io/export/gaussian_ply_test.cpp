@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/io/export/gaussian_ply.h"
+#include "gaussmap/io/export/map_export.h"
 
 #include <gtest/gtest.h>
 
@@ -20,8 +20,7 @@ namespace {
 class GaussianPly : public testing::Test {
  protected:
   std::string write(const GaussianMap<3>& map, const GaussianPlyOptions& options) const {
-    EXPECT_EQ(writeGaussianPly(path(), map, options),
-              options.scale ? map.gaussianCount(*options.scale) : leaves(map).size());
+    EXPECT_EQ(savePly(path(), map, options), options.scale ? map.gaussianCount(*options.scale) : leaves(map).size());
     return contentsOf(path());
   }
   std::filesystem::path path() const { return directory_.path() / "map.ply"; }
@@ -146,11 +145,10 @@ TEST_F(GaussianPly, AnEmptyMapIsAFileWithoutVertices) {
 }
 
 TEST_F(GaussianPly, RefusesWhatCannotBeAndLeavesNoFile) {
-  EXPECT_THROW(writeGaussianPly(path(), map_, {PlyContent::Splats, PlyColour::Height, 2, 2.0}), std::out_of_range);
+  EXPECT_THROW(savePly(path(), map_, {PlyContent::Splats, PlyColour::Height, 2, 2.0}), std::out_of_range);
   for (const double sigma : {0.0, -1.0, std::nan(""), HUGE_VAL})
-    EXPECT_THROW(writeGaussianPly(path(), map_, {PlyContent::Ellipsoids, PlyColour::Height, 0, sigma}),
-                 std::invalid_argument);
-  EXPECT_THROW(writeGaussianPly(directory_.path() / "no" / "map.ply", map_), FileError);
+    EXPECT_THROW(savePly(path(), map_, {PlyContent::Ellipsoids, PlyColour::Height, 0, sigma}), std::invalid_argument);
+  EXPECT_THROW(savePly(directory_.path() / "no" / "map.ply", map_), FileError);
   EXPECT_TRUE(std::filesystem::is_empty(directory_.path()));
 }
 

@@ -36,14 +36,14 @@ class MapTiles : public MapFile {
 TEST_F(MapTiles, AreSquaresWithAnIndexOfTheirLowerCorners) {
   const GaussianMapOctree map =
       build<3>({{-0.05, 0.05, 0.05}, {19.95, 0.05, 3.0}, {20.05, -0.05, 0.0}, {20.06, -0.06, 0.0}}, {0.1, 10, 2, 0.0});
-  const WrittenTiles written = saveTiles(map, folder());
+  const WrittenTiles written = saveTiles(folder(), map);
   EXPECT_EQ(written.tiles, 3u);
   EXPECT_EQ(written.gaussians, 3u);
   EXPECT_EQ(contentsOf(folder() / kTilesIndex),
             "# gaussmap: resolution 0.1 ratio 10 scales 2 noise 0.005\n"
             "x_resolution: 20.0\ny_resolution: 20.0\n"
             "tile_-20_0.pcd: [-20, 0]\ntile_0_0.pcd: [0, 0]\ntile_20_-20.pcd: [20, -20]\n");
-  const GaussianRecords tile = readRecordsPcd(folder() / "tile_20_-20.pcd");
+  const GaussianRecords tile = loadRecordsPcd(folder() / "tile_20_-20.pcd");
   ASSERT_EQ(tile.records.size(), 1u);
   EXPECT_EQ(tile.records[0].weight, 2.0f);
   EXPECT_NEAR(tile.records[0].mean[0], 20.055f, 1e-5f);
@@ -55,7 +55,7 @@ TEST_F(MapTiles, HoldEveryGaussianOnceInItsSquare) {
   TilesOptions options;
   options.size = 7;
   options.scale = std::nullopt;
-  const WrittenTiles written = saveTiles(map, folder(), options);
+  const WrittenTiles written = saveTiles(folder(), map, options);
   std::size_t found = 0, tiles = 0;
   for (const auto& entry : fs::directory_iterator(folder())) {
     if (entry.path().extension() != ".pcd") continue;
@@ -63,7 +63,7 @@ TEST_F(MapTiles, HoldEveryGaussianOnceInItsSquare) {
     int x = 0, y = 0;
     ASSERT_EQ(std::sscanf(entry.path().filename().c_str(), "tile_%d_%d.pcd", &x, &y), 2);
     EXPECT_EQ(x % 7, 0);
-    for (const GaussianRecord& record : readRecordsPcd(entry.path()).records) {
+    for (const GaussianRecord& record : loadRecordsPcd(entry.path()).records) {
       EXPECT_TRUE(record.mean[0] >= float(x) && record.mean[0] < float(x + 7));
       EXPECT_TRUE(record.mean[1] >= float(y) && record.mean[1] < float(y + 7));
       ++found;
@@ -76,7 +76,7 @@ TEST_F(MapTiles, HoldEveryGaussianOnceInItsSquare) {
 
 TEST_F(MapTiles, OfTheFinestScaleBecomeAMapOfAllScales) {
   const GaussianMapOctree map = build<3>(spreadCloud(), {0.5, 4, 3, 0.03});
-  saveTiles(map, folder());
+  saveTiles(folder(), map);
   const GaussianMapOctree back = loadTiles(folder());
   EXPECT_EQ(back.options(), map.options());
   for (int s = 0; s < 3; ++s) expectClose(map, back, s);
@@ -87,7 +87,7 @@ TEST_F(MapTiles, OfAllScalesBecomeTheMap) {
   const GaussianMapOctree map = refined<3>(build<3>(spreadCloud(), {0.5, 4, 3, 0.0}));
   TilesOptions options;
   options.scale = std::nullopt;
-  saveTiles(map, folder(), options);
+  saveTiles(folder(), map, options);
   const GaussianMapOctree back = loadTiles(folder());
   expectClose(map, back, 0);
   for (int s = 1; s < 3; ++s) {
@@ -97,7 +97,7 @@ TEST_F(MapTiles, OfAllScalesBecomeTheMap) {
 }
 
 TEST_F(MapTiles, AreReadWithoutTheComment) {
-  saveTiles(build<3>(spreadCloud(), {0.5, 4, 3, 0.0}), folder());
+  saveTiles(folder(), build<3>(spreadCloud(), {0.5, 4, 3, 0.0}));
   const std::string index = contentsOf(folder() / kTilesIndex);
   directory_.write("tiles/" + std::string(kTilesIndex), "\r\n" + index.substr(index.find('\n') + 1) + "# end\n");
   EXPECT_EQ(loadTiles(folder()).scales(), 1);
@@ -107,15 +107,15 @@ TEST_F(MapTiles, AreRefusedWithAReason) {
   const GaussianMapOctree map = smallMap();
   TilesOptions none;
   none.size = 0;
-  EXPECT_THROW(saveTiles(map, folder(), none), std::invalid_argument);
+  EXPECT_THROW(saveTiles(folder(), map, none), std::invalid_argument);
   none = {};
   none.scale = 3;
-  EXPECT_THROW(saveTiles(map, folder(), none), std::out_of_range);
-  EXPECT_THROW(saveTiles(build<3>({{3e9, 0, 0}}, {10.0, 4, 2, 0.0}), folder()), std::out_of_range);
+  EXPECT_THROW(saveTiles(folder(), map, none), std::out_of_range);
+  EXPECT_THROW(saveTiles(folder(), build<3>({{3e9, 0, 0}}, {10.0, 4, 2, 0.0})), std::out_of_range);
   EXPECT_TRUE(namesInFolder().empty());
   fs::create_directory(folder());
-  saveTiles(map, folder());  // an empty one is taken
-  EXPECT_THROW(saveTiles(map, folder()), FileError);
+  saveTiles(folder(), map);  // an empty one is taken
+  EXPECT_THROW(saveTiles(folder(), map), FileError);
   const std::string index = contentsOf(folder() / kTilesIndex);
   const auto refused = [&](const std::string& text, const std::string& why) {
     directory_.write("tiles/" + std::string(kTilesIndex), text);

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
 #include "gaussmap/io/pcd/pcd_writer.h"
 #include "io/files/file_contents.h"
@@ -66,19 +66,19 @@ class SegmentFiles : public testing::Test {
 TEST_F(SegmentFiles, ComeBackFromPcdToTheLastBit) {
   for (const double offset : {0.0, 1e7, -3e5}) {
     const SegmentMap map = randomMap(6, offset);
-    writeSegmentPcd(own("map.pcd"), map);
-    expectEqual(readSegmentPcd(own("map.pcd")), map);
+    saveSegmentsPcd(own("map.pcd"), map);
+    expectEqual(loadSegmentsPcd(own("map.pcd")), map);
   }
-  writeSegmentPcd(own("empty.pcd"), {});
-  expectEqual(readSegmentPcd(own("empty.pcd")), {});
+  saveSegmentsPcd(own("empty.pcd"), {});
+  expectEqual(loadSegmentsPcd(own("empty.pcd")), {});
 }
 
 TEST_F(SegmentFiles, GiveTheSameBytesForTheSameMap) {
   const SegmentMap map = randomMap(4);
   for (const char* const name : {"a", "b"}) {
-    writeSegmentPcd(own(name + std::string(".pcd")), map);
-    writeSegmentCsv(own(name + std::string(".csv")), map);
-    writeSegmentGeoJson(own(name + std::string(".geojson")), map);
+    saveSegmentsPcd(own(name + std::string(".pcd")), map);
+    saveSegmentsCsv(own(name + std::string(".csv")), map);
+    saveSegmentsGeoJson(own(name + std::string(".geojson")), map);
   }
   for (const char* const extension : {".pcd", ".csv", ".geojson"})
     EXPECT_EQ(contentsOf(own(std::string("a") + extension)), contentsOf(own(std::string("b") + extension)));
@@ -90,7 +90,7 @@ TEST_F(SegmentFiles, ShowEndPointsAndNormalsInPcd) {
   map.segments[0].start = {1, 2};
   map.segments[0].end = {1, 5};  // upwards: free space on the left, towards -x
   map.chains = {{0, 1, false}};
-  writeSegmentPcd(own("map.pcd"), map);
+  saveSegmentsPcd(own("map.pcd"), map);
   const PcdReader reader(own("map.pcd"));
   EXPECT_EQ(reader.header().width, 2u);
   EXPECT_EQ(reader.header().height, 1u);
@@ -116,28 +116,28 @@ SegmentMap oneSegment() {
 }
 
 TEST_F(SegmentFiles, AreOneLineASegmentInCsv) {
-  writeSegmentCsv(own("map.csv"), oneSegment());
+  saveSegmentsCsv(own("map.csv"), oneSegment());
   EXPECT_EQ(contentsOf(own("map.csv")),
             "chain,closed,start_x,start_y,end_x,end_y,length,normal_variance,offset_variance,offset_angle_covariance,"
             "angle_variance,weight,last_seen\n0,1,0.5,0,3.5,4,5,0.25,1,0.5,2,12.5,7\n");
 }
 
 TEST_F(SegmentFiles, AreLineStringsInGeoJson) {
-  writeSegmentGeoJson(own("map.geojson"), oneSegment());
+  saveSegmentsGeoJson(own("map.geojson"), oneSegment());
   EXPECT_EQ(contentsOf(own("map.geojson")),
             "{\"type\":\"FeatureCollection\",\"features\":[\n"
             "{\"type\":\"Feature\",\"geometry\":{\"type\":\"LineString\",\"coordinates\":[[0.5,0],[3.5,4]]},"
             "\"properties\":{\"chain\":0,\"closed\":true,\"length\":5,\"normal_variance\":0.25,\"offset_variance\":1,"
             "\"offset_angle_covariance\":0.5,\"angle_variance\":2,\"weight\":12.5,\"last_seen\":7}}\n]}\n");
-  writeSegmentGeoJson(own("empty.geojson"), {});
+  saveSegmentsGeoJson(own("empty.geojson"), {});
   EXPECT_EQ(contentsOf(own("empty.geojson")), "{\"type\":\"FeatureCollection\",\"features\":[\n]}\n");
 }
 
 TEST_F(SegmentFiles, AreNotWrittenIfANumberIsNotFinite) {
   const auto expectRefused = [&](const SegmentMap& map) {
-    EXPECT_THROW(writeSegmentPcd(own("x"), map), std::invalid_argument);
-    EXPECT_THROW(writeSegmentCsv(own("x"), map), std::invalid_argument);
-    EXPECT_THROW(writeSegmentGeoJson(own("x"), map), std::invalid_argument);
+    EXPECT_THROW(saveSegmentsPcd(own("x"), map), std::invalid_argument);
+    EXPECT_THROW(saveSegmentsCsv(own("x"), map), std::invalid_argument);
+    EXPECT_THROW(saveSegmentsGeoJson(own("x"), map), std::invalid_argument);
     EXPECT_TRUE(std::filesystem::is_empty(directory_.path()));
   };
   const double bad = std::numeric_limits<double>::quiet_NaN();
@@ -157,23 +157,23 @@ TEST_F(SegmentFiles, AreNotWrittenIfANumberIsNotFinite) {
   expectRefused(map);
   map = oneSegment();
   map.segments[0].end.x() = 1e40;
-  EXPECT_THROW(writeSegmentPcd(own("x"), map), std::invalid_argument);
-  EXPECT_THROW(writeSegmentCsv(own("none/x"), oneSegment()), FileError);
+  EXPECT_THROW(saveSegmentsPcd(own("x"), map), std::invalid_argument);
+  EXPECT_THROW(saveSegmentsCsv(own("none/x"), oneSegment()), FileError);
 }
 
 TEST_F(SegmentFiles, RefuseCloudsThatAreNoMaps) {
   writePcd(own("cloud.pcd"), {{1, 2, 3}});
-  test::expectComplaint(test::complaintOf([&] { readSegmentPcd(own("cloud.pcd")); }), own("cloud.pcd"),
+  test::expectComplaint(test::complaintOf([&] { loadSegmentsPcd(own("cloud.pcd")); }), own("cloud.pcd"),
                         {"no map of segments", "missing"});
   directory_.write("text.pcd", "hello");
-  EXPECT_NE(test::complaintOf([&] { readSegmentPcd(own("text.pcd")); }), "");
+  EXPECT_NE(test::complaintOf([&] { loadSegmentsPcd(own("text.pcd")); }), "");
 }
 
 TEST_F(SegmentFiles, AreReadOrRefusedWhateverTheirBytesAre) {
-  writeSegmentPcd(own("good.pcd"), randomMap(2));
+  saveSegmentsPcd(own("good.pcd"), randomMap(2));
   test::expectMutationsReadOrRefused({contentsOf(own("good.pcd"))}, [&](const std::string& bytes) {
-    const SegmentMap map = readSegmentPcd(directory_.write("bad.pcd", bytes));
-    EXPECT_NO_THROW(writeSegmentCsv(own("again.csv"), map));  // whatever was read is a map
+    const SegmentMap map = loadSegmentsPcd(directory_.write("bad.pcd", bytes));
+    EXPECT_NO_THROW(saveSegmentsCsv(own("again.csv"), map));  // whatever was read is a map
   });
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "gaussmap/core/error.h"
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 
 // Files that a reader must read or refuse with one FileError, whatever their bytes.
 namespace gaussmap::test {

@@ -40,9 +40,9 @@ TEST_F(MapFile, KnowsThatACompressedMapCannotGrow) {
   const GaussianMapOctree map = thinned(build<3>(randomCloud<3>(1000, 27), {0.1, 4, 3, 0.0}));
   ASSERT_FALSE(map.scale(0).moments.empty());
   const auto path = directory_.path() / "small.gmap";
-  saveMap<3>(map, path);
-  EXPECT_TRUE(loadMap<3>(path).isCompressed());
-  EXPECT_FALSE(loadMap<3>(path).canGrow());
+  save(path, map);
+  EXPECT_TRUE(load(path).isCompressed());
+  EXPECT_FALSE(load(path).canGrow());
 }
 
 TEST_F(MapFile, OfACompressedMapIsSmaller) {
@@ -54,21 +54,21 @@ TEST_F(MapFile, OfACompressedMapIsSmaller) {
 TEST_F(MapFile, MayLackChildrenButNoParent) {
   const auto path = directory_.path() / "map.gmap";
   const auto saveWithoutTile = [&](const std::string& scale) {
-    saveMap<3>(build<3>({{0.5, 0.5, 0.5}, {500.5, 0.5, 0.5}}, {0.1, 10, 2, 0.0}), path, {}, {true, 3, 0});
+    save(path, build<3>({{0.5, 0.5, 0.5}, {500.5, 0.5, 0.5}}, {0.1, 10, 2, 0.0}), {}, {true, 3, 0});
     test::shell(path, "DELETE FROM tiles WHERE scale = " + scale + " AND x > 0;" +
                           "UPDATE metadata SET value = '1' WHERE name = 'cells." + scale + "'");
   };
   saveWithoutTile("0");
-  EXPECT_TRUE(loadMap<3>(path).isCompressed());
+  EXPECT_TRUE(load(path).isCompressed());
   saveWithoutTile("1");
-  test::expectComplaint(test::complaintOf([&] { loadMap<3>(path); }), path, {"damaged", "(500, 0, 0)", "missing"});
+  test::expectComplaint(test::complaintOf([&] { load(path); }), path, {"damaged", "(500, 0, 0)", "missing"});
 }
 
 TEST_F(MapFile, AsPcdGivesBackACompressedMapButForFloats) {
   const GaussianMapOctree map = thinned(refine<3>(build<3>(randomCloud<3>(3000, 29), {0.1, 3, 3, 0.0})).map);
   const auto path = directory_.path() / "small.pcd";
-  saveMapPcd(map, path);
-  const GaussianMapOctree got = loadMapPcd(path);
+  savePcd(path, map);
+  const GaussianMapOctree got = loadPcd(path);
   EXPECT_TRUE(got.isCompressed());
   EXPECT_FALSE(got.canGrow());
   for (int s = 0; s < 3; ++s) {
@@ -83,8 +83,8 @@ TEST_F(MapFile, AsPcdGivesBackACompressedMapButForFloats) {
 TEST_F(MapFile, AsPcdWithoutItsFinestScaleIsACoarserMap) {
   const GaussianMapOctree map = bare(refine<3>(build<3>(randomCloud<3>(500, 30), {0.1, 3, 3, 0.0})).map);
   const auto path = directory_.path() / "bare.pcd";
-  saveMapPcd(map, path);
-  const GaussianMapOctree got = loadMapPcd(path);
+  savePcd(path, map);
+  const GaussianMapOctree got = loadPcd(path);
   EXPECT_EQ(got.scales(), 1);
   EXPECT_EQ(got.gaussianCount(0), map.gaussianCount(2));
 }

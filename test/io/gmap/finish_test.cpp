@@ -19,8 +19,8 @@ class FinishedFile : public MapFile {
   fs::path path() const { return directory_.path() / "map.gmap"; }
   template <int D>
   GaussianMap<D> savedFinished(const GaussianMap<D>& map, int level = 15) {
-    saveMap<D>(map, path(), {}, {true, level, 0, Precision::Finished});
-    return loadMap<D>(path());
+    save<D>(path(), map, {}, {true, level, 0, Precision::Finished});
+    return load<D>(path());
   }
 };
 
@@ -105,9 +105,9 @@ TEST_F(FinishedFile, SaysThatItIsFinalUntilItIsSavedExactly) {
   const GaussianMapOctree finished = savedFinished<3>(smallMap());
   ASSERT_EQ(loadMetadata(path()).count(kFinalEntry), 1u);
   EXPECT_NE(loadMetadata(path()).at(kFinalEntry).find("5 %"), std::string::npos);
-  saveMap<3>(finished, path(), loadMetadata(path()), {true, 3, 0});
+  save(path(), finished, loadMetadata(path()), {true, 3, 0});
   EXPECT_EQ(loadMetadata(path()).count(kFinalEntry), 0u);
-  expectSameMap<3>(loadMap<3>(path()), finished);
+  expectSameMap<3>(load(path()), finished);
 }
 
 TEST_F(FinishedFile, TakesNoMorePoints) {
@@ -118,7 +118,7 @@ TEST_F(FinishedFile, TakesNoMorePoints) {
 TEST_F(FinishedFile, HasTheSameBytesForAnyThreads) {
   std::vector<std::string> files;
   for (const int threads : {1, 2, 0}) {
-    saveMap<3>(smallMap(), path(), {}, {true, 15, threads, Precision::Finished});
+    save(path(), smallMap(), {}, {true, 15, threads, Precision::Finished});
     files.push_back(contentsOf(path()));
   }
   for (const std::string& file : files) EXPECT_TRUE(file == files.front());
@@ -132,7 +132,7 @@ TEST_F(FinishedFile, WithBytesChangedIsTheSameOrRefused) {
   for (int round = 0; round < 1000; ++round) {
     directory_.write("changed.gmap", mutated(good, random));
     try {
-      EXPECT_TRUE(sameMap<3>(loadMap<3>(directory_.path() / "changed.gmap"), finished)) << "round " << round;
+      EXPECT_TRUE(sameMap<3>(load(directory_.path() / "changed.gmap"), finished)) << "round " << round;
     } catch (const FileError&) {
       ++refused;
     }

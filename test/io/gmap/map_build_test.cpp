@@ -6,7 +6,7 @@
 
 #include "clustering/undo_merges.h"
 #include "gaussmap/io/gmap/build_map_file.h"
-#include "gaussmap/io/gmap/map_history.h"
+#include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/io/pcd/pcd_writer.h"
 #include "gaussmap/io/scans/pcd_scans.h"
 #include "io/gmap/gain_threshold.h"
@@ -43,10 +43,10 @@ class BuiltFile : public MapFile {
     reading.resolution = map.resolution;
     const MapMetadata metadata = {{"history", "[]"}};
     const fs::path expected = directory_.path() / "expected.gmap";
-    saveMap<3>(
-        refine<3>(build<3>(accumulateScans(PcdScans(scans, ScanFrame::Map), reading).moments, map), PerCell{budget})
-            .map,
-        expected, metadata, {true, 3, 0});
+    save(expected,
+         refine<3>(build<3>(accumulateScans(PcdScans(scans, ScanFrame::Map), reading).moments, map), PerCell{budget})
+             .map,
+         metadata, {true, 3, 0});
     BuildMapFileOptions options;
     options.max_memory = max_memory;
     options.budget = PerCell{budget};
@@ -55,12 +55,12 @@ class BuiltFile : public MapFile {
     const BuiltMapFile built = buildMapFile(
         PcdScans(scans, ScanFrame::Map), reading, map, path(), [&](const PointCounts&) { return metadata; }, options);
     EXPECT_EQ(built.counts.accepted, static_cast<std::int64_t>(points.size()));
-    const GaussianMapOctree loaded = loadMap<3>(path());
+    const GaussianMapOctree loaded = load(path());
     for (int s = 0; s < loaded.scales(); ++s) {
       EXPECT_EQ(built.cells[static_cast<std::size_t>(s)], loaded.cellCount(s));
       EXPECT_EQ(built.gaussians[static_cast<std::size_t>(s)], loaded.gaussianCount(s));
     }
-    expectSameMap<3>(loaded, loadMap<3>(expected));
+    expectSameMap<3>(loaded, load(expected));
     EXPECT_TRUE(contentsOf(path()) == contentsOf(expected));
   }
 };

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 [[noreturn]] void saveForEver(const fs::path& path, const std::array<GaussianMapOctree, 2>& maps, int pipe) {
   for (std::size_t round = 0;; ++round) {
     try {
-      saveMap<3>(maps[round % 2], path, {}, {true, 1, 1});
+      save(path, maps[round % 2], {}, {true, 1, 1});
     } catch (...) {
       ::_exit(3);
     }
@@ -29,7 +29,7 @@ TEST_F(MapFile, SurvivesAKillInTheMiddleOfASave) {
   const std::array<GaussianMapOctree, 2> maps = {build<3>(randomCloud<3>(6000, 51), {0.05, 10, 3, 0.0}),
                                                  build<3>(randomCloud<3>(7000, 52), {0.05, 10, 3, 0.0})};
   const fs::path path = directory_.path() / "map.gmap", part = directory_.path() / "map.gmap.part";
-  saveMap<3>(maps[0], path);
+  save(path, maps[0]);
   Random random(53);
   int left_a_part = 0;
   for (int round = 0; round < 12; ++round) {
@@ -59,13 +59,13 @@ TEST_F(MapFile, SurvivesAKillInTheMiddleOfASave) {
     ::close(pipe[0]);
 
     left_a_part += fs::exists(part);
-    const GaussianMapOctree found = loadMap<3>(path);
+    const GaussianMapOctree found = load(path);
     EXPECT_TRUE(sameMap<3>(found, maps[0]) || sameMap<3>(found, maps[1])) << "round " << round;
   }
   EXPECT_GT(left_a_part, 0);  // else the test has proven nothing
   directory_.write("map.gmap.part", "stale");
-  saveMap<3>(maps[1], path, {}, {true, 3, 0});
-  expectSameMap<3>(loadMap<3>(path), maps[1]);
+  save(path, maps[1], {}, {true, 3, 0});
+  expectSameMap<3>(load(path), maps[1]);
   EXPECT_EQ(namesInFolder(), std::vector<std::string>{"map.gmap"});
 }
 

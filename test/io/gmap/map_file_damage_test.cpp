@@ -10,7 +10,7 @@ namespace fs = std::filesystem;
 TEST_F(MapFile, WithAnyRowChangedIsRefused) {
   const fs::path good = directory_.path() / "good.gmap", path = directory_.path() / "map.gmap";
   const GaussianMapOctree map = smallMap();
-  saveMap<3>(map, good);
+  save(good, map);
   const std::string first_tile = " WHERE rowid = (SELECT MIN(rowid) FROM tiles WHERE scale = 0)";
   const std::string last_tile = " WHERE rowid = (SELECT MAX(rowid) FROM tiles WHERE scale = 0)";
   const auto setMetadata = [](const std::string& name, const std::string& value) {
@@ -72,27 +72,27 @@ TEST_F(MapFile, WithAnyRowChangedIsRefused) {
   for (const std::string& edit : edits) {
     fs::copy_file(good, path, fs::copy_options::overwrite_existing);
     shell(path, edit);
-    EXPECT_THROW(loadMap<3>(path), FileError) << edit;
+    EXPECT_THROW(load(path), FileError) << edit;
   }
 }
 
 TEST_F(MapFile, WithTilesSwappedIsRefused) {
   const fs::path path = directory_.path() / "map.gmap";
-  saveMap<3>(smallMap(), path);
+  save(path, smallMap());
   shell(path,
         "CREATE TEMP TABLE two AS SELECT rowid AS r, data FROM tiles WHERE scale = 0 LIMIT 2;"
         "UPDATE tiles SET data = (SELECT data FROM two WHERE r != tiles.rowid) WHERE rowid IN (SELECT r FROM two)");
-  const std::string message = complaintOf([&] { loadMap<3>(path); });
+  const std::string message = complaintOf([&] { load(path); });
   EXPECT_NE(message.find("belongs to another place"), std::string::npos) << message;
 }
 
 TEST_F(MapFile, WithRowsThatMeanNothingToItIsTheSameMap) {
   const fs::path path = directory_.path() / "map.gmap";
-  saveMap<3>(smallMap(), path);
+  save(path, smallMap());
   shell(path,
         "CREATE TABLE notes (text); INSERT INTO notes VALUES ('mine'); INSERT INTO metadata VALUES ('user.x', 'y');"
         "VACUUM");
-  expectSameMap<3>(loadMap<3>(path), smallMap());
+  expectSameMap<3>(load(path), smallMap());
   EXPECT_EQ(loadMetadata(path), (MapMetadata{{"x", "y"}}));
 }
 
@@ -101,7 +101,7 @@ bool loadsAsTheMap(const fs::path& path, const GaussianMapOctree& map) {
   try {
     loadMetadata(path);
     mapFileSize(path);
-    if (!sameMap<3>(loadMap<3>(path), map)) ADD_FAILURE() << path << " loads as another map";
+    if (!sameMap<3>(load(path), map)) ADD_FAILURE() << path << " loads as another map";
     return true;
   } catch (const FileError&) {
     return false;
@@ -111,7 +111,7 @@ bool loadsAsTheMap(const fs::path& path, const GaussianMapOctree& map) {
 TEST_F(MapFile, CutShortIsRefused) {
   const GaussianMapOctree map = smallMap();
   const fs::path good = directory_.path() / "good.gmap";
-  saveMap<3>(map, good);
+  save(good, map);
   const std::string bytes = contentsOf(good);
   for (std::size_t length = 0; length < bytes.size(); length += length < 200 ? 1 : 97)
     EXPECT_FALSE(loadsAsTheMap(directory_.write("cut.gmap", bytes.substr(0, length)), map)) << length << " bytes";
@@ -122,7 +122,7 @@ TEST_F(MapFile, CutShortIsRefused) {
 TEST_F(MapFile, WithFlippedBytesIsTheSameMapOrRefused) {
   const GaussianMapOctree map = smallMap();
   const fs::path good = directory_.path() / "good.gmap", path = directory_.path() / "flipped.gmap";
-  saveMap<3>(map, good);
+  save(good, map);
   const std::string bytes = contentsOf(good);
   Random random(41);
   int refused = 0, same = 0;
@@ -144,7 +144,7 @@ TEST_F(MapFile, WithFlippedBytesIsTheSameMapOrRefused) {
 TEST_F(MapFile, WithPagesCopiedOverOthersIsTheSameMapOrRefused) {  // makes rings of pages, and rows there twice
   const GaussianMapOctree map = smallMap();
   const fs::path good = directory_.path() / "good.gmap", path = directory_.path() / "mixed.gmap";
-  saveMap<3>(map, good);
+  save(good, map);
   const std::string bytes = contentsOf(good);
   const std::size_t pages = bytes.size() / 4096;
   ASSERT_GT(pages, 6u);
@@ -161,10 +161,10 @@ TEST_F(MapFile, WithPagesCopiedOverOthersIsTheSameMapOrRefused) {  // makes ring
 
 TEST_F(MapFile, IsReadWithoutRegardForJournalsBesideIt) {
   const fs::path path = directory_.path() / "map.gmap";
-  saveMap<3>(smallMap(), path);
+  save(path, smallMap());
   directory_.write("map.gmap-journal", std::string("\xd9\xd5\x05\xf9\x20\xa1\x63\xd7", 8) + std::string(600, '\1'));
   directory_.write("map.gmap-wal", std::string(600, '\1'));
-  expectSameMap<3>(loadMap<3>(path), smallMap());
+  expectSameMap<3>(load(path), smallMap());
 }
 
 }  // namespace

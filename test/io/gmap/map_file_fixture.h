@@ -53,11 +53,11 @@ class MapFile : public testing::Test {
   template <int D>
   void expectRoundTrip(const GaussianMap<D>& map) {
     const std::filesystem::path path = directory_.path() / "map.gmap";
-    saveMap<D>(map, path, {}, {true, 3, 0});
-    expectSameMap<D>(loadMap<D>(path), map);
+    save<D>(path, map, {}, {true, 3, 0});
+    expectSameMap<D>(load<D>(path), map);
   }
   static void expectRefused(const std::filesystem::path& path, const std::string& why) {
-    expectComplaint(complaintOf([&] { loadMap<3>(path); }), path, {why});
+    expectComplaint(complaintOf([&] { load(path); }), path, {why});
     expectComplaint(complaintOf([&] { loadMetadata(path); }), path, {why});
   }
   std::vector<std::string> namesInFolder() const {

@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 
 TEST_F(MapFile, IsASoundDatabaseWithAnApplicationId) {
   const fs::path path = directory_.path() / "map.gmap";
-  saveMap<3>(smallMap(), path);
+  save(path, smallMap());
   EXPECT_EQ(shell(path, "PRAGMA integrity_check"), std::vector<std::string>{"ok"});
   EXPECT_EQ(shell(path, "PRAGMA application_id"), std::vector<std::string>{"1735221616"});  // "gmap"
   EXPECT_EQ(shell(path, "PRAGMA user_version"), std::vector<std::string>{"1"});
@@ -27,10 +27,10 @@ TEST_F(MapFile, IsASoundDatabaseWithAnApplicationId) {
 
 TEST_F(MapFile, OfAnotherDimensionIsRefused) {
   const fs::path path = directory_.path() / "map.gmap";
-  saveMap<2>(build<2>(randomCloud<2>(100, 1), {}), path);
-  const std::string message = complaintOf([&] { loadMap<3>(path); });
+  save<2>(path, build<2>(randomCloud<2>(100, 1), {}));
+  const std::string message = complaintOf([&] { load(path); });
   EXPECT_NE(message.find("dimension 2"), std::string::npos) << message;
-  EXPECT_NO_THROW(loadMap<2>(path));
+  EXPECT_NO_THROW(load<2>(path));
   EXPECT_NO_THROW(loadMetadata(path));
 }
 
@@ -59,7 +59,7 @@ TEST_F(MapFile, MustBeAMap) {
 
 TEST_F(MapFile, OfAnotherVersionIsRefusedByItsNumber) {
   const fs::path path = directory_.path() / "map.gmap";
-  saveMap<3>(smallMap(), path);
+  save(path, smallMap());
   shell(path, "PRAGMA user_version = 2");
   expectRefused(path, "version 2");
 }

@@ -72,14 +72,14 @@ TEST_F(MapFile, GivesBackALatticeThatCompressesToAlmostNothing) {  // one point 
   ASSERT_EQ(map.cellCount(0), 100000u);
   for (const int level : {1, 3, 19}) {
     const fs::path path = directory_.path() / "lattice.gmap";
-    saveMap<3>(map, path, {}, {true, level, 0});
-    expectSameMap<3>(loadMap<3>(path), map);
+    save(path, map, {}, {true, level, 0});
+    expectSameMap<3>(load(path), map);
   }
 }
 
 TEST_F(MapFile, SaysHowLargeItsPartsAre) {
   const fs::path path = directory_.path() / "map.gmap";
-  saveMap<3>(smallMap(), path);
+  save(path, smallMap());
   const MapFileSize size = mapFileSize(path);
   EXPECT_EQ(size.file, fs::file_size(path));
   ASSERT_EQ(size.scale_tiles.size(), 3u);

@@ -17,7 +17,7 @@ TEST_F(MapFile, HasTheSameBytesForTheSameMapAndAnyThreads) {
   std::vector<std::string> files;
   for (const int threads : {1, 2, 0, 1}) {
     const fs::path path = directory_.path() / ("map" + std::to_string(files.size()));
-    saveMap<3>(map, path, metadata, {false, 3, threads});
+    save(path, map, metadata, {false, 3, threads});
     files.push_back(contentsOf(path));
   }
   for (const std::string& file : files) EXPECT_TRUE(file == files.front());
@@ -25,11 +25,11 @@ TEST_F(MapFile, HasTheSameBytesForTheSameMapAndAnyThreads) {
 
 TEST_F(MapFile, KeepsAnExistingFileUnlessToldOtherwise) {
   const fs::path path = directory_.write("map.gmap", "mine");
-  const std::string message = complaintOf([&] { saveMap<3>(smallMap(), path); });
+  const std::string message = complaintOf([&] { save(path, smallMap()); });
   EXPECT_NE(message.find("exists already"), std::string::npos) << message;
   EXPECT_EQ(contentsOf(path), "mine");
-  saveMap<3>(smallMap(), path, {}, {true, 3, 0});
-  expectSameMap<3>(loadMap<3>(path), smallMap());
+  save(path, smallMap(), {}, {true, 3, 0});
+  expectSameMap<3>(load(path), smallMap());
   EXPECT_EQ(namesInFolder(), std::vector<std::string>{"map.gmap"});
 }
 
@@ -44,10 +44,10 @@ TEST_F(MapFile, KeepsMetadataWhateverTheirNames) {
                                 {"bytes", "\xff\xfe\x80"},
                                 {"long", std::string(200000, 'x')}};
   const fs::path path = directory_.path() / "map.gmap";
-  saveMap<3>(smallMap(), path, metadata);
+  save(path, smallMap(), metadata);
   EXPECT_EQ(loadMetadata(path), metadata);
-  expectSameMap<3>(loadMap<3>(path), smallMap());
-  saveMap<3>(smallMap(), directory_.path() / "bare.gmap");
+  expectSameMap<3>(load(path), smallMap());
+  save(directory_.path() / "bare.gmap", smallMap());
   EXPECT_TRUE(loadMetadata(directory_.path() / "bare.gmap").empty());
 }
 
@@ -55,27 +55,27 @@ TEST_F(MapFile, MayHaveAnyNameThatTheFileSystemTakes) {
   for (const char* const name :
        {"a b", "100%", "what?immutable=0", "#1", "stra\u00dfe.gmap", ":memory:", "file:x", "%41"}) {
     const fs::path path = directory_.path() / name;
-    saveMap<3>(smallMap(), path);
-    expectSameMap<3>(loadMap<3>(path), smallMap());
+    save(path, smallMap());
+    expectSameMap<3>(load(path), smallMap());
   }
   const fs::path before = fs::current_path();
   fs::current_path(directory_.path());
-  EXPECT_NO_THROW(loadMap<3>(":memory:"));
-  saveMap<3>(smallMap(), "relative.gmap");
-  EXPECT_NO_THROW(loadMap<3>("relative.gmap"));
+  EXPECT_NO_THROW(load(":memory:"));
+  save("relative.gmap", smallMap());
+  EXPECT_NO_THROW(load("relative.gmap"));
   fs::current_path(before);
 }
 
 TEST_F(MapFile, CannotBeMadeWhereNoFileCanBe) {
-  EXPECT_THROW(saveMap<3>(smallMap(), directory_.path() / "missing" / "map.gmap"), FileError);
-  EXPECT_THROW(saveMap<3>(smallMap(), directory_.path(), {}, {true, 3, 0}), FileError);
-  EXPECT_THROW(saveMap<3>(smallMap(), directory_.path() / std::string(5000, 'x')), FileError);
+  EXPECT_THROW(save(directory_.path() / "missing" / "map.gmap", smallMap()), FileError);
+  EXPECT_THROW(save(directory_.path(), smallMap(), {}, {true, 3, 0}), FileError);
+  EXPECT_THROW(save(directory_.path() / std::string(5000, 'x'), smallMap()), FileError);
   EXPECT_TRUE(namesInFolder().empty());
 }
 
 TEST_F(MapFile, ThatDoesNotFitTheDiskLeavesTheOldOne) {  // a limit on the size of files stands in for the disk
   const fs::path path = directory_.path() / "map.gmap";
-  saveMap<3>(smallMap(), path);
+  save(path, smallMap());
   const GaussianMapOctree large = build<3>(randomCloud<3>(20000, 26), {0.02, 10, 3, 0.0});
   struct rlimit before;
   ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
@@ -85,14 +85,14 @@ TEST_F(MapFile, ThatDoesNotFitTheDiskLeavesTheOldOne) {  // a limit on the size 
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
   std::string message;
   try {
-    saveMap<3>(large, path, {}, {true, 3, 0});
+    save(path, large, {}, {true, 3, 0});
   } catch (const FileError& error) {
     message = error.what();
   }
   ::setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, handler);
   EXPECT_NE(message.find("cannot be written"), std::string::npos) << message;
-  expectSameMap<3>(loadMap<3>(path), smallMap());
+  expectSameMap<3>(load(path), smallMap());
   EXPECT_EQ(namesInFolder(), std::vector<std::string>{"map.gmap"});
 }
 

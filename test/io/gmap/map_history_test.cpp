@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/io/gmap/map_history.h"
+#include "gaussmap/io/gmap/map_file.h"
 
 #include <gtest/gtest.h>
 
@@ -80,8 +80,8 @@ TEST(MapHistory, SavesAResultWithItsCurves) {
   const RefineResult<3> result = refine(smallCloudMap(), budget, quickCurves());
   MapMetadata metadata;
   recordStep(metadata, refineStep(budget, quickCurves()));
-  saveMap(result, path, metadata);
-  expectSameMap<3>(loadMap<3>(path), result.map);
+  save(path, result, metadata);
+  expectSameMap<3>(load(path), result.map);
   MapMetadata expected = metadata;
   recordCurves(expected, result.curves);
   EXPECT_EQ(loadMetadata(path), expected);
@@ -96,7 +96,7 @@ TEST(MaxFileBytes, BoundTheFileWithItsMetadata) {
   const std::uintmax_t most = savedSize<3>(map, metadata) + 20000;
   for (const bool curves : {false, true}) {
     const RefineResult<3> result = refine(map, maxFileBytes(most, metadata), curves ? quickCurves() : RefineOptions());
-    saveMap(result, path, metadata, {true});
+    save(path, result, metadata, {true});
     EXPECT_LE(std::filesystem::file_size(path), most);
     EXPECT_GT(result.map.gaussianCount(1), map.cellCount(1));
   }

@@ -59,7 +59,7 @@ GaussianMap<D> partOf(const GaussianMap<D>& map, const Box<D>& box, int finest_s
 
 template <int D>
 void expectParts(const GaussianMap<D>& map, const fs::path& path, std::uint64_t seed) {
-  saveMap<D>(map, path, {}, {true, 3, 0});
+  save<D>(path, map, {}, {true, 3, 0});
   for (const std::size_t cache : {std::size_t{0}, std::size_t{20000}, std::size_t{1} << 30}) {
     MapReader<D> reader(path, {cache, 0});
     Random random(seed);
@@ -96,7 +96,7 @@ TEST_F(MapFile, OfACompressedMapIsReadBoxByBox) {
 TEST_F(MapFile, IsReadWholeThroughAnInfiniteBox) {
   const fs::path path = directory_.path() / "map.gmap";
   const GaussianMapOctree map = smallMap();
-  saveMap<3>(map, path, {{"crs", "EPSG:25832"}});
+  save(path, map, {{"crs", "EPSG:25832"}});
   MapReader<3> reader(path);
   expectSameMap<3>(reader.load(kEverything), map);
   EXPECT_EQ(reader.metadata(), (MapMetadata{{"crs", "EPSG:25832"}}));
@@ -107,7 +107,7 @@ TEST_F(MapFile, IsReadWholeThroughAnInfiniteBox) {
   }
   const GaussianMapOctree nothing = reader.load({{1e7, 1e7, 1e7}, {1e8, 1e8, 1e8}});
   EXPECT_TRUE(nothing.empty());
-  saveMap<3>(GaussianMapOctree({0.1, 4, 3, 0.0}), path, {}, {true, 3, 0});
+  save(path, GaussianMapOctree({0.1, 4, 3, 0.0}), {}, {true, 3, 0});
   EXPECT_TRUE(MapReader<3>(path).load(kEverything).empty());
 }
 
@@ -117,7 +117,7 @@ TEST_F(MapFile, IsReadBoxByBoxFarAway) {
   for (Vector<3>& point : points) point += Vector<3>(1e7, -1e7, 5.0);
   points.emplace_back(2e8, -2e8, 0.0);
   const GaussianMapOctree map = build<3>(points, {0.1, 10, 3, 0.0});
-  saveMap<3>(map, path);
+  save(path, map);
   MapReader<3> reader(path);
   const Box<3> box{{1e7 - 1.0, -1e7 - 1.0, 4.0}, {1e7 + 1.0, -1e7 + 1.0, 6.0}};
   const GaussianMapOctree part = reader.load(box);
@@ -128,7 +128,7 @@ TEST_F(MapFile, IsReadBoxByBoxFarAway) {
 
 TEST_F(MapFile, IsReadTileByTileOnceCoarseScalesFirst) {
   const fs::path path = directory_.path() / "map.gmap";
-  saveMap<3>(refined<3>(build<3>(randomCloud<3>(3000, 72), {0.02, 4, 3, 0.0})), path);
+  save(path, refined<3>(build<3>(randomCloud<3>(3000, 72), {0.02, 4, 3, 0.0})));
   const auto tilesOf = [&](int s) {
     return static_cast<std::size_t>(
         std::stoi(shell(path, "SELECT COUNT(*) FROM tiles WHERE scale = " + std::to_string(s)).at(0)));
@@ -156,7 +156,7 @@ TEST_F(MapFile, ForgetsTheTilesThatWereUsedLongestAgo) {
   std::vector<Vector<3>> points;  // three tiles of equal contents in a row: 64 cells of 0.1 m each
   for (int tile = 0; tile < 3; ++tile)
     for (int i = 0; i < 50; ++i) points.emplace_back(6.4 * tile + 0.05 + 0.1 * i, 0.05, 0.05);
-  saveMap<3>(build<3>(points, {0.1, 4, 1, 0.0}), path);
+  save(path, build<3>(points, {0.1, 4, 1, 0.0}));
   const auto box = [](int tile) { return Box<3>{{6.4 * tile + 0.01, 0, 0}, {6.4 * tile + 1.0, 1, 1}}; };
   MapReader<3> whole(path);
   whole.load(box(0));
@@ -174,10 +174,10 @@ TEST_F(MapFile, ForgetsTheTilesThatWereUsedLongestAgo) {
 TEST_F(MapFile, StaysTheOneThatWasOpenedUntilRefreshed) {
   const fs::path path = directory_.path() / "map.gmap";
   const GaussianMapOctree old = smallMap(), fresh = build<3>(randomCloud<3>(300, 70), {0.2, 3, 2, 0.0});
-  saveMap<3>(old, path);
+  save(path, old);
   MapReader<3> reader(path, {0, 0});
   EXPECT_FALSE(reader.refresh());
-  saveMap<3>(fresh, path, {}, {true, 3, 0});
+  save(path, fresh, {}, {true, 3, 0});
   expectSameMap<3>(reader.load(kEverything), old);
   EXPECT_TRUE(reader.refresh());
   expectSameMap<3>(reader.load(kEverything), fresh);
@@ -190,7 +190,7 @@ TEST_F(MapFile, IsRefusedByTheReaderWithAReason) {
   EXPECT_THROW(MapReader<3>(directory_.path() / "missing.gmap"), FileError);
   EXPECT_THROW(MapReader<3>(directory_.write("text", "no map")), FileError);
   const fs::path path = directory_.path() / "map.gmap";
-  saveMap<3>(smallMap(), path);
+  save(path, smallMap());
   EXPECT_THROW(MapReader<2>{path}, FileError);
   MapReader<3> reader(path);
   EXPECT_THROW(reader.load(kEverything, 3), std::out_of_range);
@@ -205,7 +205,7 @@ TEST_F(MapFile, IsRefusedByTheReaderWithAReason) {
 TEST_F(MapFile, WithBytesChangedIsReadTheSameOrRefused) {
   const GaussianMapOctree map = smallMap();
   const fs::path path = directory_.path() / "map.gmap", changed = directory_.path() / "changed.gmap";
-  saveMap<3>(map, path);
+  save(path, map);
   const std::string good = contentsOf(path);
   Random random(71);
   const Box<3> box{{-1, -1, -1}, {0.3, 0.3, 0.3}};

@@ -53,11 +53,11 @@ TEST_F(MapFile, SeesTheOldOrTheNewTilesBesideAWriter) {
   std::vector<GaussianMapOctree> parts;  // of each version
   const fs::path other = directory_.path() / "other.gmap";
   for (const GaussianMapOctree& version : versions) {
-    saveMap<3>(version, other, {}, {true, 1, 1});
+    save(other, version, {}, {true, 1, 1});
     parts.push_back(MapReader<3>(other).load(box));
   }
   fs::remove(other);
-  saveMap<3>(versions[0], path);
+  save(path, versions[0]);
 
   int tokens[2];  // one for each update, when the version before has been seen
   ASSERT_EQ(::pipe(tokens), 0);
@@ -91,7 +91,7 @@ TEST_F(MapFile, SeesTheOldOrTheNewTilesBesideAWriter) {
   if (reader.refresh()) ++version;  // the last may have come with the writer's end
   EXPECT_EQ(version, std::size_t{kUpdates});
   EXPECT_TRUE(sameMap<3>(reader.load(box), parts.back()));
-  expectSameMap<3>(loadMap<3>(path), versions.back());
+  expectSameMap<3>(load(path), versions.back());
 }
 
 TEST_F(MapFile, SurvivesAKillInTheMiddleOfAnUpdate) {
@@ -100,7 +100,7 @@ TEST_F(MapFile, SurvivesAKillInTheMiddleOfAnUpdate) {
   const GaussianMapOctree old = refined<3>(build<3>(points, {0.02, 5, 3, 0.0}));
   MomentGrid<3> added(0.02);
   added.addPoints(more);
-  saveMap<3>(old, path);
+  save(path, old);
   const std::string bytes = contentsOf(path);
   const auto update = [&] { updateMap<3>(path, added, oneThread()); };
 
@@ -109,7 +109,7 @@ TEST_F(MapFile, SurvivesAKillInTheMiddleOfAnUpdate) {
   const pid_t first = start(update);
   ASSERT_GT(first, 0);
   for (int status = 0; ::waitpid(first, &status, WNOHANG) == 0;) ++duration;
-  const GaussianMapOctree fresh = loadMap<3>(path);
+  const GaussianMapOctree fresh = load(path);
   ASSERT_FALSE(sameMap<3>(old, fresh));
 
   Random random(123);
@@ -132,7 +132,7 @@ TEST_F(MapFile, SurvivesAKillInTheMiddleOfAnUpdate) {
     }
     killed += WIFSIGNALED(status);
     left_a_part += fs::exists(part);
-    const GaussianMapOctree found = loadMap<3>(path);
+    const GaussianMapOctree found = load(path);
     EXPECT_TRUE(sameMap<3>(found, fresh) || (WIFSIGNALED(status) && sameMap<3>(found, old))) << "round " << round;
     EXPECT_EQ(shell(path, "PRAGMA integrity_check"), std::vector<std::string>{"ok"});
   }
@@ -140,7 +140,7 @@ TEST_F(MapFile, SurvivesAKillInTheMiddleOfAnUpdate) {
   EXPECT_GT(left_a_part, 0);  // else the test has proven nothing
   directory_.write("map.gmap", bytes);
   update();
-  expectSameMap<3>(loadMap<3>(path), fresh);
+  expectSameMap<3>(load(path), fresh);
   EXPECT_EQ(namesInFolder(), std::vector<std::string>{"map.gmap"});
 }
 

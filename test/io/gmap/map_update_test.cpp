@@ -42,9 +42,9 @@ class MapUpdateFile : public MapFile {
   template <int D>
   GaussianMap<D> updated(const GaussianMap<D>& map, const std::vector<Vector<D>>& points,
                          const UpdateOptions& options = {}) {
-    saveMap<D>(map, path(), {}, {true, 3, 0});
+    save<D>(path(), map, {}, {true, 3, 0});
     updateMap<D>(path(), gridOf<D>(points, map.options().resolution), options);
-    return loadMap<D>(path());
+    return load<D>(path());
   }
 };
 
@@ -58,7 +58,7 @@ TEST_F(MapUpdateFile, IsTheMapBuiltAtOnce) {
         const GaussianMapOctree at_once = build<3>(joined<3>(old, added), options);
         EXPECT_TRUE(sameMap<3>(updated<3>(build<3>(old, options), added), at_once)) << ratio << ", " << scales;
         const std::string tiles = tilesIn(path());
-        saveMap<3>(at_once, path(), {}, {true, 3, 0});
+        save(path(), at_once, {}, {true, 3, 0});
         EXPECT_EQ(tilesIn(path()) == tiles, true) << ratio << ", " << scales;  // byte for byte
       }
     }
@@ -71,12 +71,12 @@ TEST_F(MapUpdateFile, IsTheSameForAnySplitIntoUpdates) {
   const MapOptions options{0.05, 5, 3, 0.0};
   Random random(85);
   const auto points = randomCloud<3>(2000, 86);
-  saveMap<3>(GaussianMapOctree(options), path());
+  save(path(), GaussianMapOctree(options));
   for (std::size_t first = 0, last = 0; first < points.size(); first = last) {
     last = std::min(points.size(), first + 1 + random.below(700));
     updateMap<3>(path(), gridOf<3>({points.begin() + long(first), points.begin() + long(last)}, 0.05));
   }
-  expectSameMap<3>(loadMap<3>(path()), build<3>(points, options));
+  expectSameMap<3>(load(path()), build<3>(points, options));
 }
 
 TEST_F(MapUpdateFile, OfARefinedMapIsRefinedAsAWholeWhereAllOfItChanges) {
@@ -125,7 +125,7 @@ TEST_F(MapUpdateFile, WritesOnlyTheTilesThatChange) {
   const MapOptions options{0.1, 4, 2, 0.0};  // tiles of 6.4 and 25.6 m
   std::vector<Vector<3>> points;
   for (int i = 0; i < 400; ++i) points.emplace_back(0.5 * i + 0.25, 0.05, 0.05);
-  saveMap<3>(build<3>(points, options), path(), {{"history", "[]"}});
+  save(path(), build<3>(points, options), {{"history", "[]"}});
   shell(path(), "UPDATE tiles SET cells = 12345");  // nobody reads it, so it marks the rows that stay
   const MapUpdate update =
       updateMap<3>(path(), gridOf<3>({{100.01, 0.05, 0.05}, {100.05, 0.05, 0.06}}, 0.1), {}, [](MapMetadata& metadata) {
@@ -138,7 +138,7 @@ TEST_F(MapUpdateFile, WritesOnlyTheTilesThatChange) {
   EXPECT_EQ(shell(path(), "SELECT COUNT(*) FROM tiles WHERE cells <> 12345").at(0), "2");
   points.emplace_back(100.01, 0.05, 0.05);
   points.emplace_back(100.05, 0.05, 0.06);
-  const GaussianMapOctree now = loadMap<3>(path());
+  const GaussianMapOctree now = load(path());
   expectSameMap<3>(now, build<3>(points, options));
   EXPECT_EQ(update.cells, (std::vector<std::size_t>{now.cellCount(0), now.cellCount(1)}));
   EXPECT_EQ(update.gaussians, (std::vector<std::size_t>{now.gaussianCount(0), now.gaussianCount(1)}));
@@ -148,9 +148,9 @@ TEST_F(MapUpdateFile, WritesOnlyTheTilesThatChange) {
 }
 
 TEST_F(MapUpdateFile, OfNothingIsTheSameMap) {
-  saveMap<3>(smallMap(), path());
+  save(path(), smallMap());
   EXPECT_EQ(updateMap<3>(path(), MomentGrid<3>(0.1)).tiles_written, 0u);
-  expectSameMap<3>(loadMap<3>(path()), smallMap());
+  expectSameMap<3>(load(path()), smallMap());
 }
 
 TEST_F(MapUpdateFile, HasTheSameBytesForAnyNumberOfThreads) {
@@ -198,28 +198,28 @@ TEST_F(MapUpdateFile, IsRefusedWithAReasonAndLeavesTheFile) {
   EXPECT_THROW(updateMap<3>(path(), added), FileError);
   EXPECT_THROW(updateMap<3>(directory_.write("text", "no map"), added), FileError);
   GaussianMapOctree map = smallMap();
-  saveMap<3>(map, path());
+  save(path(), map);
   EXPECT_THROW(updateMap<3>(path(), gridOf<3>({{0, 0, 0}}, 0.2)), std::invalid_argument);
   UpdateOptions low;
   low.budget = 0.5;
   EXPECT_THROW(updateMap<3>(path(), added, low), std::invalid_argument);
   EXPECT_THROW(updateMap<2>(path(), MomentGrid<2>(0.1)), FileError);
-  expectSameMap<3>(loadMap<3>(path()), map);
+  expectSameMap<3>(load(path()), map);
 
   const GaussianMapOctree small = compress(map, 0.2);
   ASSERT_TRUE(small.isCompressed());
-  saveMap<3>(small, path(), {}, {true, 3, 0});
+  save(path(), small, {}, {true, 3, 0});
   expectComplaint(complaintOf([&] { updateMap<3>(path(), added); }), path(), {"takes no more scans"});
   MapScale<3> finest;
   finest.keys = {{0, 0, 0}};
   finest.gaussians = {{{0, 0, 0}, 1e-4 * Matrix<3>::Identity(), 5.0}};
-  saveMap<3>(build<3>(finest, {0.1, 4, 3, 0.0}), path(), {}, {true, 3, 0});
+  save(path(), build<3>(finest, {0.1, 4, 3, 0.0}), {}, {true, 3, 0});
   expectComplaint(complaintOf([&] { updateMap<3>(path(), added); }), path(), {"takes no more scans"});
   EXPECT_EQ(namesInFolder(), (std::vector<std::string>{"map.gmap", "text"}));
 }
 
 TEST_F(MapUpdateFile, OfADamagedFileIsRefusedOrHarmless) {
-  saveMap<3>(smallMap(), path());
+  save(path(), smallMap());
   const std::string good = contentsOf(path());
   const MomentGrid<3> added = gridOf<3>(randomCloud<3>(60, 95), 0.1);
   Random random(96);

@@ -30,7 +30,7 @@ class OldMap : public MapFile {
 };
 
 TEST_F(OldMap, Opens) {
-  const GaussianMapOctree old = loadMap<3>(path_), fresh = build<3>(oldPoints(), kOptions);
+  const GaussianMapOctree old = load(path_), fresh = build<3>(oldPoints(), kOptions);
   ASSERT_EQ(old.scales(), 3);
   EXPECT_TRUE(old.canGrow());
   EXPECT_EQ(old.scale(0).keys, fresh.scale(0).keys);
@@ -52,7 +52,7 @@ TEST_F(OldMap, TakesMoreScans) {
   updateMap<3>(path_, added);
   std::vector<Vector<3>> all = oldPoints();
   all.insert(all.end(), more.begin(), more.end());
-  const GaussianMapOctree grown = loadMap<3>(path_), fresh = build<3>(all, kOptions);
+  const GaussianMapOctree grown = load(path_), fresh = build<3>(all, kOptions);
   EXPECT_EQ(grown.scale(0).keys, fresh.scale(0).keys);
   EXPECT_EQ(grown.scale(0).moments, fresh.scale(0).moments);
   for (int s = 0; s < 3; ++s) EXPECT_DOUBLE_EQ(grown.weight(s), 3600.0);

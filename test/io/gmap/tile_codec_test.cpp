@@ -9,7 +9,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 
 namespace gaussmap {
 using namespace detail;

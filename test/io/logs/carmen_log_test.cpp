@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "io/files/hostile_files.h"
 #include "io/files/temporary_directory.h"
 #include "io/logs/gzip.h"

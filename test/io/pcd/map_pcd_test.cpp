@@ -70,7 +70,7 @@ class MapPcd : public testing::Test {
  protected:
   fs::path saved(const GaussianMapOctree& map, const ExportOptions& options = {}) {
     const fs::path path = directory_.path() / ("map" + std::to_string(next_++) + ".pcd");
-    saveMapPcd(map, path, options);
+    savePcd(path, map, options);
     return path;
   }
 
@@ -81,9 +81,9 @@ class MapPcd : public testing::Test {
 TEST_F(MapPcd, GivesBackTheMapButForFloats) {
   for (const int ratio : {2, 3, 10}) {
     const GaussianMapOctree map = build<3>(randomCloud<3>(3000, 61), {0.1, ratio, 3, 0.0});
-    expectSameButForFloats(loadMapPcd(saved(map)), map, 5e-7);
+    expectSameButForFloats(loadPcd(saved(map)), map, 5e-7);
     const GaussianMapOctree fine = refined(map);
-    const GaussianMapOctree got = loadMapPcd(saved(fine));
+    const GaussianMapOctree got = loadPcd(saved(fine));
     expectSameButForFloats(got, fine, 5e-7);
     EXPECT_FALSE(got.canGrow());
   }
@@ -92,19 +92,19 @@ TEST_F(MapPcd, GivesBackTheMapButForFloats) {
 TEST_F(MapPcd, KnowsResolutionsThatFloatsOnlyApproach) {
   for (const double resolution : {0.1, 0.3, 0.002, 0.123456, 17.0, 1.0 / 1024.0}) {
     const GaussianMapOctree map = build<3>(randomCloud<3>(300, 62), {resolution, 10, 2, 0.0});
-    EXPECT_EQ(loadMapPcd(saved(map)).options().resolution, resolution);
+    EXPECT_EQ(loadPcd(saved(map)).options().resolution, resolution);
   }
 }
 
 TEST_F(MapPcd, LinksOneClusterToTheOneThereIs) {
   const GaussianMapOctree map = build<3>(randomCloud<3>(2000, 63), {0.1, 4, 3, 0.0});
-  const GaussianMapOctree got = loadMapPcd(saved(map));
+  const GaussianMapOctree got = loadPcd(saved(map));
   for (int s = 0; s < 2; ++s) EXPECT_EQ(got.scale(s).parent, map.scale(s).parent);
 }
 
 TEST_F(MapPcd, LinksEveryGaussianToTheNearestClusterAbove) {
   const GaussianMapOctree map = refined(build<3>(randomCloud<3>(2000, 64), {0.1, 10, 3, 0.0}));
-  const GaussianMapOctree got = loadMapPcd(saved(map));
+  const GaussianMapOctree got = loadPcd(saved(map));
   for (int s = 0; s < 2; ++s) {
     for (std::size_t i = 0; i < got.gaussianCount(s); ++i) {
       const CellKey<3> above = got.grid().ancestor(got.scale(s).keys[got.cellOf(i, s)], s, s + 1);
@@ -126,7 +126,7 @@ TEST_F(MapPcd, OfOneScaleIsAMapOfThatScaleAlone) {
     const fs::path path = saved(map, options);
     EXPECT_EQ(PcdReader(path).size(), map.gaussianCount(s));
     EXPECT_EQ(PcdReader(path).column("scale").front(), s);
-    const GaussianMapOctree got = loadMapPcd(path);
+    const GaussianMapOctree got = loadPcd(path);
     ASSERT_EQ(got.scales(), 1);
     EXPECT_NEAR(got.options().resolution, map.grid().side(s), 1e-12);
     ASSERT_EQ(got.gaussianCount(0), map.gaussianCount(s));
@@ -146,7 +146,7 @@ TEST_F(MapPcd, FarAwayKeepsAThousandthOfACellThroughItsViewpoint) {
   const Eigen::Vector3d origin = PcdReader(path).header().viewpoint.translation;
   EXPECT_LT((origin - far).lpNorm<Eigen::Infinity>(), 1024.0);
   for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(std::fmod(origin(axis), 1024.0), 0.0);
-  expectSameButForFloats(loadMapPcd(path), map, 1e-4);
+  expectSameButForFloats(loadPcd(path), map, 1e-4);
 }
 
 TEST_F(MapPcd, NearTheOriginHasNoViewpoint) {
@@ -179,22 +179,22 @@ TEST_F(MapPcd, RepairsCovariancesThatFloatsHaveSpoilt) {  // plates of 90 m, 1 m
 
 TEST_F(MapPcd, CanBeReadBackWithManyScalesAndMuchNoise) {  // 2^20 finest cells along a coarsest one
   const GaussianMapOctree map = build<3>(randomCloud<3>(300, 69), {0.1, 2, 21, 0.1});
-  EXPECT_EQ(loadMapPcd(saved(map)).scales(), 21);
+  EXPECT_EQ(loadPcd(saved(map)).scales(), 21);
 }
 
 TEST_F(MapPcd, KeepsAnExistingFileUnlessToldOtherwise) {
   const fs::path path = directory_.write("mine.pcd", "mine");
   const GaussianMapOctree map = build<3>(randomCloud<3>(100, 70), {});
-  EXPECT_THROW(saveMapPcd(map, path), FileError);
+  EXPECT_THROW(savePcd(path, map), FileError);
   EXPECT_EQ(fs::file_size(path), 4u);
   ExportOptions options;
   options.overwrite = true;
-  saveMapPcd(map, path, options);
-  EXPECT_EQ(loadMapPcd(path).cellCount(0), map.cellCount(0));
+  savePcd(path, map, options);
+  EXPECT_EQ(loadPcd(path).cellCount(0), map.cellCount(0));
 }
 
 TEST_F(MapPcd, OfNothingIsNoMap) {
-  EXPECT_NE(messageOf([&] { loadMapPcd(saved(GaussianMapOctree())); }).find("no Gaussian"), std::string::npos);
+  EXPECT_NE(messageOf([&] { loadPcd(saved(GaussianMapOctree())); }).find("no Gaussian"), std::string::npos);
 }
 
 // ---- other clouds ---------------------------------------------------------------------------------------------------
@@ -285,11 +285,11 @@ TEST(GaussianRecords, AreRefusedWithAnOriginThatIsNone) {
 TEST_F(MapPcd, OfOtherCloudsIsRefused) {
   const fs::path points = directory_.path() / "points.pcd";
   writePcd(points, randomCloud<3>(100, 1));
-  EXPECT_NE(messageOf([&] { loadMapPcd(points); }).find("points, not of Gaussians"), std::string::npos);
-  EXPECT_THROW(loadMapPcd(directory_.path() / "missing.pcd"), FileError);
-  EXPECT_THROW(loadMapPcd(directory_.write("text.pcd", "hello")), FileError);
-  EXPECT_THROW(loadMapPcd(directory_.write("empty.pcd", "")), FileError);
-  EXPECT_THROW(loadMapPcd(directory_.path()), FileError);
+  EXPECT_NE(messageOf([&] { loadPcd(points); }).find("points, not of Gaussians"), std::string::npos);
+  EXPECT_THROW(loadPcd(directory_.path() / "missing.pcd"), FileError);
+  EXPECT_THROW(loadPcd(directory_.write("text.pcd", "hello")), FileError);
+  EXPECT_THROW(loadPcd(directory_.write("empty.pcd", "")), FileError);
+  EXPECT_THROW(loadPcd(directory_.path()), FileError);
 }
 
 /// Writes goodRecords() with some fields left out or of another kind, and with another VIEWPOINT.
@@ -320,28 +320,28 @@ fs::path writeRecords(const TemporaryDirectory& directory, const std::string& wi
 }
 
 TEST_F(MapPcd, MayHaveItsFieldsInAnyOrderAndKind) {
-  EXPECT_NO_THROW(loadMapPcd(writeRecords(directory_, "none")));
+  EXPECT_NO_THROW(loadPcd(writeRecords(directory_, "none")));
 }
 
 TEST_F(MapPcd, NeedsAllItsFields) {
   for (const char* const field :
        {"covariance", "weight", "occupancy", "scale", "cell_side", "cell_x", "cell_y", "cell_z"}) {
-    const std::string message = messageOf([&] { loadMapPcd(writeRecords(directory_, field)); });
+    const std::string message = messageOf([&] { loadPcd(writeRecords(directory_, field)); });
     EXPECT_NE(message.find(field), std::string::npos) << message;
   }
-  EXPECT_THROW(loadMapPcd(writeRecords(directory_, "none", 3)), FileError);
+  EXPECT_THROW(loadPcd(writeRecords(directory_, "none", 3)), FileError);
 }
 
 TEST_F(MapPcd, NeedsWholeCells) {
-  EXPECT_THROW(loadMapPcd(writeRecords(directory_, "none", 6, {}, 0.5)), FileError);
-  EXPECT_THROW(loadMapPcd(writeRecords(directory_, "none", 6, {}, 1e10)), FileError);
-  EXPECT_THROW(loadMapPcd(writeRecords(directory_, "none", 6, {}, kNaN)), FileError);
+  EXPECT_THROW(loadPcd(writeRecords(directory_, "none", 6, {}, 0.5)), FileError);
+  EXPECT_THROW(loadPcd(writeRecords(directory_, "none", 6, {}, 1e10)), FileError);
+  EXPECT_THROW(loadPcd(writeRecords(directory_, "none", 6, {}, kNaN)), FileError);
 }
 
 TEST_F(MapPcd, IsNotTurned) {  // cells cannot be
   Pose pose;
   pose.rotation = Pose::Rotation(0.0, 0.0, 0.0, 1.0);
-  EXPECT_NE(messageOf([&] { loadMapPcd(writeRecords(directory_, "none", 6, pose)); }).find("VIEWPOINT"),
+  EXPECT_NE(messageOf([&] { loadPcd(writeRecords(directory_, "none", 6, pose)); }).find("VIEWPOINT"),
             std::string::npos);
 }
 
@@ -350,7 +350,7 @@ TEST_F(MapPcd, IsNotTurned) {  // cells cannot be
 TEST_F(MapPcd, IsToldFromOtherFiles) {
   const GaussianMapOctree map = build<3>(randomCloud<3>(500, 71), {});
   const fs::path pcd = saved(map), gmap = directory_.path() / "map.gmap", points = directory_.path() / "points.pcd";
-  saveMap<3>(map, gmap, {{"who", "me"}});
+  save(gmap, map, {{"who", "me"}});
   writePcd(points, randomCloud<3>(100, 1));
   EXPECT_TRUE(isGmap(gmap));
   EXPECT_TRUE(isMap(gmap));
@@ -366,18 +366,18 @@ TEST_F(MapPcd, IsToldFromOtherFiles) {
         directory_.path() / "missing", directory_.path(), fs::path()}) {
     EXPECT_FALSE(isGmap(path)) << path;
     EXPECT_FALSE(isMap(path)) << path;
-    EXPECT_THROW(loadAnyMap(path), FileError) << path;
+    EXPECT_THROW(loadAny(path), FileError) << path;
   }
 
   MapMetadata metadata;
-  EXPECT_EQ(loadAnyMap(gmap, &metadata).cellCount(0), map.cellCount(0));
+  EXPECT_EQ(loadAny(gmap, &metadata).cellCount(0), map.cellCount(0));
   EXPECT_EQ(metadata, (MapMetadata{{"who", "me"}}));
-  EXPECT_EQ(loadAnyMap(gmap).cellCount(0), map.cellCount(0));
-  EXPECT_EQ(loadAnyMap(pcd, &metadata).cellCount(0), map.cellCount(0));
+  EXPECT_EQ(loadAny(gmap).cellCount(0), map.cellCount(0));
+  EXPECT_EQ(loadAny(pcd, &metadata).cellCount(0), map.cellCount(0));
   const fs::path misnamed = directory_.path() / "pcd.gmap";
   fs::copy_file(pcd, misnamed);
-  EXPECT_EQ(loadAnyMap(misnamed).cellCount(0), map.cellCount(0));
-  const std::string message = messageOf([&] { loadAnyMap(directory_.write("text.gmap", "hello")); });
+  EXPECT_EQ(loadAny(misnamed).cellCount(0), map.cellCount(0));
+  const std::string message = messageOf([&] { loadAny(directory_.write("text.gmap", "hello")); });
   EXPECT_NE(message.find(".gmap"), std::string::npos) << message;
 }
 

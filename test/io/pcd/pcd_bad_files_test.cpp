@@ -3,7 +3,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
 #include "io/files/hostile_files.h"
 #include "io/files/temporary_directory.h"

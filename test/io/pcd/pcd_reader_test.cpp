@@ -7,7 +7,7 @@
 #include <limits>
 #include <thread>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "io/files/temporary_directory.h"
 #include "io/pcd/pcd_bytes.h"
 

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "io/files/temporary_directory.h"
 #include "io/pcd/pcd_bytes.h"
 

@@ -8,7 +8,7 @@
 #include <map>
 #include <sstream>
 
-#include "gaussmap/io/export/gaussian_table.h"
+#include "gaussmap/io/export/map_export.h"
 #include "gaussmap/io/export/map_tiles.h"
 #include "gaussmap/io/export/segment_files.h"
 #include "gaussmap/io/gmap/map_file.h"
@@ -81,20 +81,20 @@ std::map<std::string, std::string> writeAll() {
   const TemporaryDirectory directory;
   const fs::path folder = directory.path();
   const GaussianMapOctree map = build<3>(kPoints, {0.05, 4, 3, 0.0});
-  saveMap<3>(map, folder / "map.gmap", {{"note", "1,5"}});
+  save(folder / "map.gmap", map, {{"note", "1,5"}});
   writePcd(folder / "points.pcd", kPoints, PcdPrecision::Double);
-  writeRecordsPcd(toRecords(map), folder / "map.pcd");
-  writeGaussianCsv(folder / "map.csv", map);
-  writeGaussianVtp(folder / "map.vtp", map);
-  saveTiles(map, folder / "tiles");
-  writeSegmentPcd(folder / "segments.pcd", segments());
-  writeSegmentCsv(folder / "segments.csv", segments());
-  writeSegmentGeoJson(folder / "segments.geojson", segments());
+  saveRecordsPcd(folder / "map.pcd", toRecords(map));
+  saveCsv(folder / "map.csv", map);
+  saveVtp(folder / "map.vtp", map);
+  saveTiles(folder / "tiles", map);
+  saveSegmentsPcd(folder / "segments.pcd", segments());
+  saveSegmentsCsv(folder / "segments.csv", segments());
+  saveSegmentsGeoJson(folder / "segments.geojson", segments());
   writePly(folder / "mesh.ply", {{{0, 0, 0}, {1.5, 0, 0}, {0, 1234.5, 0}}, {{0, 1, 2}}});
   Pose pose;
   pose.translation = {1234.5, 0.25, -0.5};
   writeTum(folder / "poses.tum", {{1234567.125, pose}, {1234568.5, pose}});
-  EXPECT_TRUE(sameMap<3>(loadMap<3>(folder / "map.gmap"), map));
+  EXPECT_TRUE(sameMap<3>(load(folder / "map.gmap"), map));
   EXPECT_EQ(loadTiles(folder / "tiles").gaussianCount(0), map.gaussianCount(0));
   EXPECT_EQ(PcdReader(folder / "points.pcd").size(), kPoints.size());
   EXPECT_EQ(readPly(folder / "mesh.ply").vertices[2].y(), 1234.5);

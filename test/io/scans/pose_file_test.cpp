@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gaussmap/io/scans/pose_file.h"
 
+#include "gaussmap/core/scans.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -9,7 +9,7 @@
 
 #include "core/unreadable_scans.h"
 #include "gaussmap/core/error.h"
-#include "gaussmap/core/random.h"
+#include "gaussmap/core/gaussian.h"
 #include "gaussmap/io/pcd/pcd_writer.h"
 #include "gaussmap/io/scans/pcd_scans.h"
 #include "io/files/temporary_directory.h"

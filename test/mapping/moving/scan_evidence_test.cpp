@@ -70,7 +70,7 @@ GaussianMap<3> mapOf(const PcdScans& scans, const ScanEvidenceOptions& options =
 std::set<std::size_t> cellsOf(const GaussianMap<3>& map, const SimulatedScan& scan, SurfaceLabel label) {
   std::set<std::size_t> cells;
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
-    const auto cell = map.find(map.grid().keyOf(scan.pose.rotation * scan.points[i] + scan.pose.translation), 0);
+    const auto cell = map.find(map.grid().keyOf(scan.pose * scan.points[i]), 0);
     if (cell && scan.labels[i] == label) cells.insert(*cell);
   }
   return cells;
@@ -117,7 +117,7 @@ TEST_F(GatherEvidence, TakesPointsInTheFrameOfTheMap) {
   std::vector<PcdScan> sources;
   for (const SimulatedScan& scan : scans) {
     std::vector<Vector<3>> in_map;
-    for (const Vector3d& point : scan.points) in_map.push_back(scan.pose.rotation * point + scan.pose.translation);
+    for (const Vector3d& point : scan.points) in_map.push_back(scan.pose * point);
     sources.push_back(write(in_map, scan.pose));
   }
   const PcdScans files(sources, ScanFrame::Map);

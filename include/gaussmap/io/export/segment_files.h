@@ -5,6 +5,7 @@
 
 #include "gaussmap/core/error.h"
 #include "gaussmap/segments/segment_map.h"
+#include "gaussmap/version.h"
 
 // Maps of line segments as files. All writers write whole files or none (AtomicFile), the same bytes for the same map,
 // and throw FileError if the file cannot be written, std::invalid_argument, naming the segment, if a number of it is
@@ -15,21 +16,21 @@ namespace gaussmap {
 /// y z (floats, z = 0) and normal_x normal_y normal_z (towards free space) for looking at, and for reading again
 /// position[2] (the same point in doubles) normal_variance covariance[3] (offset, offset and angle, angle) weight
 /// last_seen, chain (number from 0) closed (of the chain); see Segment and SegmentMap.
-void writeSegmentPcd(const std::filesystem::path& path, const SegmentMap& map);
+GAUSSMAP_API void saveSegmentsPcd(const std::filesystem::path& path, const SegmentMap& map);
 
-/// Reads what writeSegmentPcd() wrote, to the last bit. Throws FileError if the file is no such cloud or a value is
+/// Reads what saveSegmentsPcd() wrote, to the last bit. Throws FileError if the file is no such cloud or a value is
 /// impossible.
-SegmentMap readSegmentPcd(const std::filesystem::path& path);
+GAUSSMAP_API SegmentMap loadSegmentsPcd(const std::filesystem::path& path);
 
-/// Has the PCD file the fields that writeSegmentPcd() writes? Throws FileError if it is not a PCD file.
-bool isSegmentPcd(const std::filesystem::path& path);
+/// Has the PCD file the fields that saveSegmentsPcd() writes? Throws FileError if it is not a PCD file.
+GAUSSMAP_API bool isSegmentPcd(const std::filesystem::path& path);
 
 /// GeoJSON: a FeatureCollection with one LineString a segment, free space on its left; coordinates are metres of the
 /// map frame, not degrees. Properties: chain, closed, length, normal_variance, offset_variance,
 /// offset_angle_covariance, angle_variance, weight, last_seen.
-void writeSegmentGeoJson(const std::filesystem::path& path, const SegmentMap& map);
+GAUSSMAP_API void saveSegmentsGeoJson(const std::filesystem::path& path, const SegmentMap& map);
 
 /// CSV, one line a segment: chain, closed, start_x, start_y, end_x, end_y and the rest of the properties above.
-void writeSegmentCsv(const std::filesystem::path& path, const SegmentMap& map);
+GAUSSMAP_API void saveSegmentsCsv(const std::filesystem::path& path, const SegmentMap& map);
 
 }  // namespace gaussmap

@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "gaussmap/io/gmap/map_file.h"
-#include "gaussmap/mapping/accumulate_scans.h"
+#include "gaussmap/mapping/build.h"
 #include "gaussmap/mapping/refine.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -27,7 +28,7 @@ struct BuiltMapFile {
   std::vector<std::size_t> cells, gaussians;  ///< by scale, finest first
 };
 
-/// Scans -> map file, for maps that do not fit into memory: the file has the same bytes as that which saveMap() writes
+/// Scans -> map file, for maps that do not fit into memory: the file has the same bytes as that which save() writes
 /// of refine(build(accumulateScans())) with the same options and metadata.
 ///
 /// Sums of points that fill their share of the memory are written, by tile, to a file without a name in the folder of
@@ -36,12 +37,12 @@ struct BuiltMapFile {
 /// dendrograms wait in that file, and a few walks over the gains of their merges find the least one that is taken. What
 /// is not bounded is one tile: at least 32 cells along a side (tileSpan()), in which only occupied cells count.
 ///
-/// `metadataOf(counts)` = the metadata of the map. Throws as accumulateScans(), saveMap() and refine();
+/// `metadataOf(counts)` = the metadata of the map. Throws as accumulateScans(), save() and refine();
 /// std::invalid_argument for RefineMethod::Insert, which looks at all cells at once, and for too little memory.
-BuiltMapFile buildMapFile(const Scans& scans, const AccumulateOptions& reading, const MapOptions& map,
-                          const std::filesystem::path& path,
-                          const std::function<MapMetadata(const PointCounts&)>& metadataOf,
-                          const BuildMapFileOptions& options,
-                          const std::function<void(const AccumulateProgress&)>& progress = {});
+GAUSSMAP_API BuiltMapFile buildMapFile(const Scans& scans, const AccumulateOptions& reading, const MapOptions& map,
+                                       const std::filesystem::path& path,
+                                       const std::function<MapMetadata(const PointCounts&)>& metadataOf,
+                                       const BuildMapFileOptions& options,
+                                       const std::function<void(const AccumulateProgress&)>& progress = {});
 
 }  // namespace gaussmap

@@ -8,6 +8,7 @@
 #include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/map/gaussian_map.h"
 #include "gaussmap/map/grid.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -26,13 +27,13 @@ struct MapReaderStatistics {
 /// A map file that is loaded box by box: opening reads the metadata and no tile, a box reads the tiles that it meets,
 /// coarsest scale first. Decoded tiles stay in memory, the least recently used go first.
 ///
-/// Safe beside writers: map files are never changed where they are, only replaced as a whole (saveMap(), updateMap()).
+/// Safe beside writers: map files are never changed where they are, only replaced as a whole (save(), updateMap()).
 /// A reader keeps the file that it opened, so that all it loads is of one version, until refresh() takes the new one.
 /// Calls from several threads are safe and wait for each other.
 template <int D>
-class MapReader {
+class GAUSSMAP_API MapReader {
  public:
-  /// Throws FileError as loadMap(), as far as the metadata tell; what is wrong with a tile is found when it is read.
+  /// Throws FileError as load(), as far as the metadata tell; what is wrong with a tile is found when it is read.
   explicit MapReader(const std::filesystem::path& path, const MapReaderOptions& options = {});
   ~MapReader();
   MapReader(MapReader&&) noexcept;
@@ -41,7 +42,7 @@ class MapReader {
   const std::filesystem::path& path() const;
   /// Where its cells are. Like metadata(), a reference that refresh() ends.
   const Grid<D>& grid() const;
-  /// What was given to saveMap().
+  /// What was given to save().
   const MapMetadata& metadata() const;
   /// Cells and Gaussians of a scale of the whole file, as its metadata tell.
   std::size_t cellCount(int scale) const;

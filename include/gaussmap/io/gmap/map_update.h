@@ -10,6 +10,7 @@
 #include "gaussmap/clustering/agglomerate.h"
 #include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/map/moment_grid.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -38,16 +39,16 @@ struct MapUpdate {
 ///
 /// The file is copied beside itself, changed there, and renamed: whoever reads, and whatever interrupts, there is the
 /// old map or the new one. It takes the place of both on the disk for that time. One writer at a time.
-/// `edit` may change the metadata given to saveMap(). Throws FileError if the file cannot be read or written, or takes
+/// `edit` may change the metadata given to save(). Throws FileError if the file cannot be read or written, or takes
 /// no more points (GaussianMap::canGrow()), std::invalid_argument if the cells of the grid are not those of the map or
 /// the budget is below 1.
 template <int D>
-MapUpdate updateMap(const std::filesystem::path& path, const MomentGrid<D>& added, const UpdateOptions& options = {},
-                    const std::function<void(MapMetadata&)>& edit = {});
+GAUSSMAP_API MapUpdate updateMap(const std::filesystem::path& path, const MomentGrid<D>& added,
+                                 const UpdateOptions& options = {}, const std::function<void(MapMetadata&)>& edit = {});
 
-/// The options of a map file: what points must be counted by that shall be added to it. Throws FileError as loadMap(),
+/// The options of a map file: what points must be counted by that shall be added to it. Throws FileError as load(),
 /// and if the map takes no more points.
 template <int D>
-MapOptions growingMapOptions(const std::filesystem::path& path);
+GAUSSMAP_API MapOptions growingMapOptions(const std::filesystem::path& path);
 
 }  // namespace gaussmap

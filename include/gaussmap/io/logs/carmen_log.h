@@ -8,6 +8,7 @@
 
 #include "gaussmap/core/error.h"
 #include "gaussmap/segments/laser_scan.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -32,9 +33,9 @@ struct CarmenLog {
 /// for 180 and 360 beams, 180 / (n - 1) for others. Readings of 80 m and more are what a SICK writes for no return.
 /// Damaged lines are left out and named; of a gzip file that was cut off or damaged all whole lines before the damage
 /// are kept. Throws FileError if the file cannot be read or not one scan is left.
-CarmenLog readCarmenLog(const std::filesystem::path& path);
+GAUSSMAP_API CarmenLog readCarmenLog(const std::filesystem::path& path);
 
 /// True for names that end in .log or .clf, or one of these and .gz, in any case.
-bool isCarmenLogName(const std::filesystem::path& name);
+GAUSSMAP_API bool isCarmenLogName(const std::filesystem::path& name);
 
 }  // namespace gaussmap

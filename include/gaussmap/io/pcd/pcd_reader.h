@@ -9,8 +9,9 @@
 #include <vector>
 
 #include "gaussmap/core/error.h"
-#include "gaussmap/core/point_block.h"
 #include "gaussmap/core/pose.h"
+#include "gaussmap/core/scans.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -27,7 +28,7 @@ struct PcdField {
 enum class PcdEncoding { Ascii, Binary, BinaryCompressed };
 
 /// What the text part of a PCD file says.
-struct PcdHeader {
+struct GAUSSMAP_API PcdHeader {
   std::vector<PcdField> fields;  ///< in the order of the file; names differ, but for padding
   std::size_t width = 0;         ///< points a row
   std::size_t height = 1;        ///< rows: > 1 in an organised cloud
@@ -54,7 +55,7 @@ struct PcdColumn {
 /// anywhere in it. No file makes it crash, hang, or ask for more memory than a small multiple of the file's size.
 /// Opening reads the header and checks it against the size of the file, but touches no point: thousands of scans
 /// may be open at once. A file that is made shorter meanwhile raises SIGBUS, see requireWhole().
-class PcdReader {
+class GAUSSMAP_API PcdReader {
  public:
   /// Throws FileError, with the line of the header or the byte of the file and the way out.
   explicit PcdReader(const std::filesystem::path& path);

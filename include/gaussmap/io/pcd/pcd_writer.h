@@ -12,6 +12,7 @@
 #include "gaussmap/core/error.h"
 #include "gaussmap/core/gaussian.h"
 #include "gaussmap/core/pose.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -35,15 +36,15 @@ PcdOutput pcdOutput(std::string name, const T* data, std::size_t count = 1, std:
 
 /// Throws std::invalid_argument, naming the field, for fields that no PCD file can have: no name or blanks in it, the
 /// same name twice, a type and size that there is not, a count of 0. Where the values are does not matter.
-void checkPcdFields(const std::vector<PcdOutput>& fields);
+GAUSSMAP_API void checkPcdFields(const std::vector<PcdOutput>& fields);
 
 /// Writes a binary PCD file (version 0.7) with any fields, whole or not at all (AtomicFile): one row of points, or rows
 /// of `width` points if that is not 0.
 /// The same input gives the same bytes. An empty cloud is written too, though PCL refuses to read one.
 /// Throws std::invalid_argument as checkPcdFields(), for a field without data, a pose with a fault, or rows that are
 /// not full; FileError if the file cannot be written.
-void writePcd(const std::filesystem::path& path, std::size_t points, const std::vector<PcdOutput>& fields,
-              const std::optional<Pose>& viewpoint = std::nullopt, std::size_t width = 0);
+GAUSSMAP_API void writePcd(const std::filesystem::path& path, std::size_t points, const std::vector<PcdOutput>& fields,
+                           const std::optional<Pose>& viewpoint = std::nullopt, std::size_t width = 0);
 
 enum class PcdPrecision {
   Float,  ///< F4: what every reader takes; resolves 4 mm at 65 km from the origin, 1 m at 10,000 km
@@ -52,7 +53,8 @@ enum class PcdPrecision {
 
 /// Writes points as x y z [m]. NaN is written as it is. Throws as above, and std::invalid_argument, naming the
 /// index, for a coordinate too large for a float.
-void writePcd(const std::filesystem::path& path, const std::vector<Vector<3>>& points,
-              PcdPrecision precision = PcdPrecision::Float, const std::optional<Pose>& viewpoint = std::nullopt);
+GAUSSMAP_API void writePcd(const std::filesystem::path& path, const std::vector<Vector<3>>& points,
+                           PcdPrecision precision = PcdPrecision::Float,
+                           const std::optional<Pose>& viewpoint = std::nullopt);
 
 }  // namespace gaussmap

@@ -5,6 +5,7 @@
 
 #include "gaussmap/core/error.h"
 #include "gaussmap/mesh/triangle_mesh.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -15,7 +16,7 @@ namespace gaussmap {
 /// Throws FileError, with the line or the byte: no PLY file, one without faces (a point cloud), a header that does not
 /// fit the size of the file, data cut off, a vertex that is not finite, an index out of range, a face of less than
 /// three corners.
-TriangleMesh readPly(const std::filesystem::path& path);
+GAUSSMAP_API TriangleMesh readPly(const std::filesystem::path& path);
 
 enum class PlyPrecision {
   Float,  ///< what every viewer takes; resolves 4 mm at 65 km from the origin
@@ -25,7 +26,7 @@ enum class PlyPrecision {
 /// Writes a binary little-endian PLY file, whole or not at all (AtomicFile). The same mesh gives the same bytes.
 /// Throws std::invalid_argument if the mesh has a fault (see checkMesh()) or a coordinate is too large for a float;
 /// FileError if the file cannot be written.
-void writePly(const std::filesystem::path& path, const TriangleMesh& mesh,
-              PlyPrecision precision = PlyPrecision::Double);
+GAUSSMAP_API void writePly(const std::filesystem::path& path, const TriangleMesh& mesh,
+                           PlyPrecision precision = PlyPrecision::Double);
 
 }  // namespace gaussmap

@@ -10,6 +10,7 @@
 #include "gaussmap/core/error.h"
 #include "gaussmap/core/scans.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -23,7 +24,7 @@ struct PcdScan {
 /// PCD files as scans. Each file is opened once; the points of an ascii or compressed file are kept only while its
 /// reader lives. The values of the points are the other numbers of the file, fields of several numbers by index:
 /// "intensity", "normal[2]".
-class PcdScans : public Scans {
+class GAUSSMAP_API PcdScans : public Scans {
  public:
   /// Opens the files and checks their headers, but for the first ones if they are open already. Throws FileError.
   explicit PcdScans(std::vector<PcdScan> scans, ScanFrame frame = ScanFrame::Sensor,
@@ -50,7 +51,7 @@ class PcdScans : public Scans {
 /// The files that a list of inputs means: files as they are, directories replaced by the *.pcd in them (in any case,
 /// not recursively, no hidden files) in natural order. The order of the inputs stays. Throws FileError if an input does
 /// not exist or a directory has no such file.
-std::vector<std::filesystem::path> listScans(const std::vector<std::filesystem::path>& inputs);
+GAUSSMAP_API std::vector<std::filesystem::path> listScans(const std::vector<std::filesystem::path>& inputs);
 
 /// Scans with poses, and what looks wrong with them.
 struct FoundScans {
@@ -61,7 +62,7 @@ struct FoundScans {
 /// Lists the scans (listScans()), gives each its pose, and checks the poses. The pose of a scan is
 /// its VIEWPOINT, unless `poses` names a pose file (readPoseFile(), posesForScans()). Warns of a scan that is given
 /// twice. Throws FileError if a file cannot be read, is a map, or a pose is unusable.
-FoundScans findScans(const std::vector<std::filesystem::path>& inputs, const std::filesystem::path& poses = {},
-                     ScanFrame frame = ScanFrame::Sensor);
+GAUSSMAP_API FoundScans findScans(const std::vector<std::filesystem::path>& inputs,
+                                  const std::filesystem::path& poses = {}, ScanFrame frame = ScanFrame::Sensor);
 
 }  // namespace gaussmap

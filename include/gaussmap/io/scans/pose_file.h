@@ -8,6 +8,7 @@
 
 #include "gaussmap/core/error.h"
 #include "gaussmap/core/pose.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -29,11 +30,11 @@ struct PoseFile {
 /// Reads a pose file; which of the layouts it has shows in the words of a line and must not change. Throws FileError
 /// with the line: a wrong number of words, numbers that are not finite, a quaternion whose norm is further than
 /// kQuaternionTolerance from 1, a matrix as far from a rotation, the same name twice.
-PoseFile readPoseFile(const std::filesystem::path& path);
+GAUSSMAP_API PoseFile readPoseFile(const std::filesystem::path& path);
 
 /// The pose of each scan. By name: the entry named like the scan's file, with or without its extension; entries of
 /// other scans do no harm. Times that are the names of all scans count as names. Otherwise in the order of the file,
 /// which must have as many entries as there are scans. Throws FileError, naming the scan or the numbers.
-std::vector<Pose> posesForScans(const PoseFile& file, const std::vector<std::filesystem::path>& scans);
+GAUSSMAP_API std::vector<Pose> posesForScans(const PoseFile& file, const std::vector<std::filesystem::path>& scans);
 
 }  // namespace gaussmap

@@ -10,14 +10,15 @@
 #include <vector>
 
 #include "gaussmap/map/gaussian_map.h"
-#include "gaussmap/mapping/accumulate_scans.h"
+#include "gaussmap/mapping/build.h"
 #include "gaussmap/sensor/projection.h"
 #include "gaussmap/sensor/visibility.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
 /// How the scans are asked which cells they hit and which they passed through.
-struct ScanEvidenceOptions {
+struct GAUSSMAP_API ScanEvidenceOptions {
   double max_range = std::numeric_limits<double>::infinity();  ///< farther points hit no cell, but free the way [m]
   std::optional<Projection> projection;     ///< of every scan; nullopt: found for each scan from its points
   std::optional<double> no_return_is_free;  ///< pixels without return are free space up to this range [m]
@@ -67,7 +68,7 @@ enum class MovingPointStep { Counting, Looking, Sharing };
 /// - grow: a cell beside a freed one that was seen only while that one was is of the same object, though no beam has
 ///   passed there since (the object's lower parts, its far side);
 /// - share: in the cells that an object shares with the surface that it stood on, the points off the surface move.
-class MovingPoints {
+class GAUSSMAP_API MovingPoints {
  public:
   /// Reads all scans three times. `progress` is called with the scans done of a step.
   /// Throws FileError, std::out_of_range as accumulateScans(), std::invalid_argument, naming the option.

@@ -16,6 +16,7 @@
 #include "gaussmap/mapping/refine.h"
 #include "gaussmap/sensor/projection.h"
 #include "gaussmap/sensor/visibility.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -31,7 +32,7 @@ enum class OccupancySamples {
   Random  ///< as many samples from it as pixels may see it, Yguel 2009 eq. (1): the same decisions, but slower
 };
 
-struct OnlineOptions {
+struct GAUSSMAP_API OnlineOptions {
   MapOptions map;
   double max_range = std::numeric_limits<double>::infinity();  ///< farther points are left out [m]
   LearningRate learning_rate = LearningRate::SampleMean;
@@ -106,7 +107,7 @@ struct OnlineStatistics {
 /// what is there and what is gone, and coarse cells get more clusters where they need them. Memory grows with the
 /// map, not with the scans.
 template <int D>
-class OnlineMapper {
+class GAUSSMAP_API OnlineMapper {
  public:
   using Removed = std::function<void(const RemovedCluster<D>&)>;
 

@@ -68,7 +68,7 @@ void GaussianMapFilter<PointT>::applyFilter(PointCloud& output) {
   PointParts parts;
   try {
     SplitPointsOptions options;
-    options.most_parts = options_.budget;
+    options.max_parts = options_.budget;
     options.max_error = options_.max_error;
     options.rule = options_.detail;
     options.part_point = options_.output == FilterOutput::Means ? PartPoint::Mean : PartPoint::Sample;

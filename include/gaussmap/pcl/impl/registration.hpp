@@ -59,7 +59,7 @@ bool GaussianMapRegistration<PointSource, PointTarget, Scalar>::setTargetMap(con
 template <typename PointSource, typename PointTarget, typename Scalar>
 bool GaussianMapRegistration<PointSource, PointTarget, Scalar>::setTargetMap(const std::filesystem::path& path) {
   try {
-    return setTargetMap(std::make_shared<const GaussianMapOctree>(loadAnyMap(path)));
+    return setTargetMap(std::make_shared<const GaussianMapOctree>(loadAny(path)));
   } catch (const std::exception& error) {
     PCL_ERROR("[gaussmap::%s::setTargetMap] %s\n", this->getClassName().c_str(), error.what());
     return false;

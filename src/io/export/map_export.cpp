@@ -2,7 +2,7 @@
 #include <charconv>
 #include <string>
 
-#include "gaussmap/io/export/gaussian_table.h"
+#include "gaussmap/io/export/map_export.h"
 #include "io/export/table_rows.h"
 #include "io/files/write_buffer.h"
 
@@ -20,7 +20,7 @@ void append(std::string& line, Number value) {
 
 }  // namespace
 
-std::size_t writeGaussianCsv(const std::filesystem::path& path, const GaussianMap<3>& map, std::optional<int> scale) {
+std::size_t saveCsv(const std::filesystem::path& path, const GaussianMap<3>& map, std::optional<int> scale) {
   const std::vector<GaussianId> rows = tableRows(map, scale);
   AtomicFile file(path);
   WriteBuffer buffer(file);

@@ -90,7 +90,7 @@ std::vector<Record> readRecords(const std::filesystem::path& path) {
 
 }  // namespace
 
-void writeSegmentPcd(const std::filesystem::path& path, const SegmentMap& map) {
+void saveSegmentsPcd(const std::filesystem::path& path, const SegmentMap& map) {
   checkSegments(map);
   std::vector<Record> records;
   records.reserve(2 * map.segments.size());
@@ -113,7 +113,7 @@ bool isSegmentPcd(const std::filesystem::path& path) {
   return reader.header().find("normal_variance") != nullptr && reader.header().find("chain") != nullptr;
 }
 
-SegmentMap readSegmentPcd(const std::filesystem::path& path) {
+SegmentMap loadSegmentsPcd(const std::filesystem::path& path) {
   const std::vector<Record> records = readRecords(path);
   SegmentMap map;
   for (std::size_t i = 0; i < records.size() / 2; ++i) {

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// The everyday headers of gaussmap::core and gaussmap::io. The PCL plug-ins are in gaussmap/pcl/.
+
+#include "gaussmap/clustering/kl_kmeans.h"
+#include "gaussmap/core/error.h"
+#include "gaussmap/core/gaussian.h"
+#include "gaussmap/core/pose.h"
+#include "gaussmap/core/scans.h"
+#include "gaussmap/editing/compress.h"
+#include "gaussmap/editing/crop.h"
+#include "gaussmap/editing/merge_maps.h"
+#include "gaussmap/editing/simplify.h"
+#include "gaussmap/editing/transform_map.h"
+#include "gaussmap/evaluation/hausdorff.h"
+#include "gaussmap/io/export/map_export.h"
+#include "gaussmap/io/export/segment_files.h"
+#include "gaussmap/io/gmap/map_file.h"
+#include "gaussmap/io/gmap/map_reader.h"
+#include "gaussmap/io/gmap/map_update.h"
+#include "gaussmap/io/pcd/map_pcd.h"
+#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/map/gaussian_map.h"
+#include "gaussmap/map/queries.h"
+#include "gaussmap/mapping/build.h"
+#include "gaussmap/mapping/moving/moving_points.h"
+#include "gaussmap/mapping/online/online_mapper.h"
+#include "gaussmap/mapping/refine.h"
+#include "gaussmap/registration/registration.h"
+#include "gaussmap/segments/segment_fitter.h"
+#include "gaussmap/version.h"
