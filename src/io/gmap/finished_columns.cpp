@@ -17,7 +17,7 @@ namespace {
 template <int D>
 constexpr std::uint64_t kNumbers = 1 + 2 * D + QuantisedGaussian<D>::kLower;
 
-constexpr std::int64_t kMost = std::int64_t{1} << 62;  // numbers are smaller, so that differences fit
+constexpr std::int64_t kLargestNumber = std::int64_t{1} << 62;  // numbers are smaller, so that differences fit
 
 int widthOf(std::uint64_t most) {
   int width = 0;
@@ -48,7 +48,7 @@ void readNumbers(ColumnReader& columns, std::size_t count, int least_width, cons
   if (width < static_cast<std::uint64_t>(least_width) || width > 8) throw std::runtime_error("a column of wrong width");
   columns.read(count, static_cast<int>(width), [&](std::size_t i, std::uint64_t bits) {
     const auto number = static_cast<std::int64_t>(low + bits);
-    if (number <= -kMost || number >= kMost) throw std::runtime_error("a number that is too large");
+    if (number <= -kLargestNumber || number >= kLargestNumber) throw std::runtime_error("a number that is too large");
     take(i, number);
   });
 }

@@ -61,8 +61,8 @@ std::vector<bool> findMovingCells(const GaussianMap<3>& map, const std::vector<E
   std::vector<std::size_t> freed;
   for (std::size_t cell = 0; cell < moving.size(); ++cell)
     if (moving[cell]) freed.push_back(cell);
-  for (const std::size_t cell : cellsOfObjects(cells, std::move(freed), options.link, options.reach))
-    moving[cell] = true;
+  const auto of_objects = cellsOfObjects(cells, std::move(freed), options.link, options.reach);
+  for (const std::size_t cell : of_objects) moving[cell] = true;
   return moving;
 }
 
