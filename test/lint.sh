@@ -3,7 +3,7 @@
 # What tools see without running anything: layers, public headers, clang-format, cppcheck, clang-tidy.
 # Usage: test/lint.sh [--quick | --changed [REV] | FILE...]
 #   --quick          without clang-tidy, which takes as long as a build
-#   --changed [REV]  clang-tidy checks the sources that differ from REV only (default: five commits ago)
+#   --changed [REV]  clang-tidy checks the sources that differ from REV only (default: the last commit)
 #   FILE...          clang-tidy checks these sources only; without, all of the library and the command line
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -34,7 +34,7 @@ echo "cppcheck: clean"
 selection=('src/*.cpp' 'apps/*.cpp' ':!src/pcl' ':!src/viewer' ':!apps/viewer')
 case "${1:-}" in
   --changed)
-    base=${2:-$(git rev-list --max-count=6 HEAD | tail -n 1)}
+    base=${2:-HEAD~1}
     mapfile -t sources < <(git diff --name-only --diff-filter=d "$base" -- "${selection[@]}")
     ;;
   "") mapfile -t sources < <(git ls-files "${selection[@]}") ;;

@@ -9,8 +9,8 @@
 #include "commands/commands.h"
 #include "common/command.h"
 #include "gaussmap/io/export/segment_files.h"
+#include "gaussmap/io/mesh/ply.h"
 #include "gaussmap/io/pcd/pcd_writer.h"
-#include "gaussmap/io/ply/ply.h"
 #include "simulate/simulation_files.h"
 
 namespace gaussmap::app {

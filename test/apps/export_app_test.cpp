@@ -2,8 +2,8 @@
 // gaussmap export: one file of every kind, and the combinations that make no sense.
 #include "apps/app_fixture.h"
 #include "gaussmap/io/gmap/map_file.h"
-#include "gaussmap/io/ply/ply.h"
-#include "io/ply/ply_vertices.h"
+#include "gaussmap/io/mesh/ply.h"
+#include "io/mesh/ply_vertices.h"
 
 namespace gaussmap::test {
 namespace {

@@ -4,8 +4,8 @@
 #include <numeric>
 
 #include "apps/app_fixture.h"
+#include "gaussmap/io/mesh/ply.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
-#include "gaussmap/io/ply/ply.h"
 #include "gaussmap/io/scans/pcd_scans.h"
 #include "gaussmap/io/scans/pose_file.h"
 #include "mesh/mesh_distance.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // PLY meshes.
 #include "fuzz_file.h"
-#include "gaussmap/io/ply/ply.h"
+#include "gaussmap/io/mesh/ply.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace gaussmap;

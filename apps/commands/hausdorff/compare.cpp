@@ -4,8 +4,8 @@
 
 #include "commands/hausdorff/hausdorff.h"
 #include "evaluation/error_cloud.h"
+#include "gaussmap/io/mesh/ply.h"
 #include "gaussmap/io/pcd/map_pcd.h"
-#include "gaussmap/io/ply/ply.h"
 
 namespace gaussmap::app {
 using namespace detail;

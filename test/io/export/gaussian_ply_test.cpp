@@ -6,12 +6,12 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "gaussmap/io/ply/ply.h"
+#include "gaussmap/io/mesh/ply.h"
 #include "gaussmap/map/queries.h"
 #include "gaussmap/mapping/build.h"
 #include "io/files/file_contents.h"
 #include "io/files/temporary_directory.h"
-#include "io/ply/ply_vertices.h"
+#include "io/mesh/ply_vertices.h"
 #include "map/random_clouds.h"
 
 namespace gaussmap::test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/io/ply/ply.h"
+#include "gaussmap/io/mesh/ply.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "gaussmap/io/ply/ply.h"
+#include "gaussmap/io/mesh/ply.h"
 #include "io/files/atomic_file.h"
 #include "io/files/write_buffer.h"
 

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include "gaussmap/io/ply/ply.h"
+#include "gaussmap/io/mesh/ply.h"
 #include "io/files/hostile_files.h"
 #include "io/files/temporary_directory.h"
 #include "io/pcd/pcd_bytes.h"

@@ -5,10 +5,10 @@
 #include <limits>
 #include <optional>
 
-#include "gaussmap/io/ply/ply.h"
+#include "gaussmap/io/mesh/ply.h"
 #include "io/files/mapped_file.h"
 #include "io/files/text.h"
-#include "io/ply/ply_header.h"
+#include "io/mesh/ply_header.h"
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "binary values are turned round for big-endian files only");
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "io/ply/ply_header.h"
+#include "io/mesh/ply_header.h"
 
 #include <algorithm>
 #include <array>
