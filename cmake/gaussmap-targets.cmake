@@ -5,9 +5,10 @@
 set(gaussmap_precompiled <Eigen/Core> <Eigen/Geometry> <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map>
                          <memory> <optional> <sstream> <stdexcept> <string> <unordered_map> <utility> <variant> <vector>)
 
-# Shared libraries export the public headers' symbols only, unless tests or commands, which use internals, are built.
+# The public headers say what is exported (GAUSSMAP_API). Shared libraries also export internals: gaussmap::io, the
+# commands and the tests use those of gaussmap::core. Nothing else leaves them.
 set(gaussmap_visibility hidden)
-if(BUILD_SHARED_LIBS AND (GAUSSMAP_BUILD_APPS OR GAUSSMAP_BUILD_TESTS OR GAUSSMAP_BUILD_BENCHMARKS OR GAUSSMAP_BUILD_VIEWER))
+if(BUILD_SHARED_LIBS)
   set(gaussmap_visibility default)
 endif()
 
