@@ -155,6 +155,7 @@ FoundScans findScans(const std::vector<std::filesystem::path>& inputs, const std
   const PoseDiagnosis diagnosis = diagnosePoses(checked);
   if (frame == ScanFrame::Sensor) warnings.insert(warnings.end(), diagnosis.warnings.begin(), diagnosis.warnings.end());
   std::vector<PcdScan> scans;
+  scans.reserve(checked.size());
   for (const ScanPose& scan : checked) scans.push_back({scan.path, normalised(scan.pose)});
   return {PcdScans(std::move(scans), frame, std::move(opened)), std::move(warnings)};
 }
