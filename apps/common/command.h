@@ -83,6 +83,7 @@ class Command {
   template <typename T>
   static std::vector<std::string> wordsOf(const std::map<std::string, T>& named) {
     std::vector<std::string> words;
+    words.reserve(named.size());
     for (const auto& entry : named) words.push_back(entry.first);
     return words;
   }

@@ -28,7 +28,11 @@ int main(int argc, char** argv) try {
   addReference(app);
   addWideScans(app);
   addBoxLoad(app);
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;  // help, or wrong usage
+  }
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "gaussmap_benchmark: %s\n", error.what());

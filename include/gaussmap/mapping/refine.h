@@ -72,8 +72,8 @@ struct MaxGaussians {
 /// The largest multiple of the occupied cells whose map is not larger than a number of bytes, to 2 %. D = 3 only.
 struct MaxBytes {
   std::uintmax_t bytes = 0;
-  /// Measures a result, for example maxFileBytes() the size of its map file. Required. While budgets are tried out the
-  /// curves are placeholders that are longer in decimals than true ones.
+  /// Measures a result, for example maxFileBytes() the size of its map file. Required. While refine()
+  /// searches the budget, it passes curves whose text is at least as long as that of the final ones.
   std::function<std::uintmax_t(const RefineResult<3>&)> size_of;
 };
 
