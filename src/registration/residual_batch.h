@@ -21,8 +21,8 @@ class ResidualBatch {
   bool isFull() const { return size_ == kCapacity; }
   /// Adds a pair. The batch must not be full.
   void add(const Gaussian<3>& gaussian, const MapGaussian& target);
-  /// Returns the normal equations of all pairs, and removes the pairs. Rotation R, translation t [m], blur^2 [m^2],
-  /// kernel k.
+  /// Returns the normal equations of all pairs, and removes the pairs.
+  /// Rotation R, translation t [m], blur^2 [m^2], kernel k.
   NormalEquations sumUp(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translation, double blur_squared,
                         double kernel);
 

@@ -10,8 +10,8 @@
 
 namespace gaussmap::detail {
 
-/// Pairs the Gaussians of a scan with the nearest ones of a map, for any pose of the scan. Keeps references to its
-/// arguments.
+/// Pairs the Gaussians of a scan with the nearest ones of a map, for any pose of the scan. Keeps references to
+/// the scan and to the neighbours.
 class ScanOnMap {
  public:
   ScanOnMap(const std::vector<Gaussian<3>>& scan, MapNeighbours& near, double kernel, int threads)
