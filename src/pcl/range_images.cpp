@@ -23,7 +23,8 @@ Eigen::Affine3f affineOf(const Pose& pose) {
 pcl::RangeImage toPclRangeImage(const RangeImage& image, const Pose& sensor) {
   const auto* const projection = std::get_if<SphericalProjection>(&image.projection());
   if (!projection)
-    throw std::invalid_argument("the image of a camera is no pcl::RangeImage: that class has pixels of equal angles");
+    throw std::invalid_argument(
+        "the range image of a camera cannot become a pcl::RangeImage, which has pixels of equal angles");
   pcl::PointCloud<pcl::PointXYZ> cloud;
   for (int row = 0; row < image.rows(); ++row)
     for (int column = 0; column < image.columns(); ++column) {
@@ -44,7 +45,8 @@ pcl::RangeImage toPclRangeImage(const RangeImage& image, const Pose& sensor) {
 RangeImage fromPclRangeImage(const pcl::RangeImage& image, const Pose& sensor) {
   const double width = image.getAngularResolutionX(), height = image.getAngularResolutionY();
   if (image.points.empty() || !(width > 0.0) || !(height > 0.0))
-    throw std::invalid_argument("an empty pcl::RangeImage: it has " + std::to_string(image.points.size()) + " pixels");
+    throw std::invalid_argument("the pcl::RangeImage is empty or has no angular resolution, number of pixels: " +
+                                std::to_string(image.points.size()));
   SphericalProjection projection;
   projection.columns = std::max(1, static_cast<int>(std::lround(2.0 * M_PI / width)));
   const int rows = std::max(1, static_cast<int>(std::lround(M_PI / height)));

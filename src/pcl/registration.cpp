@@ -11,7 +11,7 @@
 namespace gaussmap {
 namespace {
 
-constexpr double kRigid = 1e-3;  // what floats and text files make of a rotation
+constexpr double kRigid = 1e-3;  // tolerance for rotations that were rounded to floats or read from text files
 
 }  // namespace
 
@@ -29,7 +29,7 @@ Pose poseOfMatrix(const Eigen::Matrix4d& matrix) {
                      rotation.determinant() > 0.0 && matrix.row(3).isApprox(Eigen::RowVector4d(0, 0, 0, 1), kRigid);
   if (!rigid) {
     std::ostringstream text;
-    text << "the guess is no rigid transform:\n" << matrix;
+    text << "the guess is not a rigid transform:\n" << matrix;
     throw std::invalid_argument(text.str());
   }
   return normalised({matrix.topRightCorner<3, 1>(), Pose::Rotation(rotation)});

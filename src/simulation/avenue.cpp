@@ -12,18 +12,18 @@ using namespace detail;
 namespace {
 
 constexpr double kKerb = 0.12;  // height of the sidewalk [m]
-constexpr double kFront = 8.5;  // of the foremost buildings, from the middle of the road [m]
-constexpr double kDeep = 14.0;  // of a building [m]
+constexpr double kFront = 8.5;  // distance of the foremost buildings from the middle of the road [m]
+constexpr double kDeep = 14.0;  // depth of a building [m]
 
 struct Building {
   double x0, x1;    // along the street
   double set_back;  // behind the foremost fronts
   double height;
-  double bay;  // from one window to the next
-  int oriels;  // every so many windows one comes forward, 0: none
+  double bay;  // distance from one window to the next
+  int oriels;  // an oriel after every so many windows, 0 = no oriels
 };
 
-/// A front in the plane of x and height, the level is how far a part comes forward.
+/// Returns a front in the plane of x and height. The level of a block is its distance in front of the wall [m].
 std::vector<Block> frontBlocks(const Building& building) {
   constexpr double kStorey = 3.1, kWindow = 1.25, kSill = 0.95, kWindowHeight = 1.55, kMargin = 0.2;
   const double width = building.x1 - building.x0;
@@ -49,7 +49,7 @@ std::vector<Block> frontBlocks(const Building& building) {
   return blocks;
 }
 
-/// From 0 to its width along x, the front in y = 0 looking towards -y.
+/// Returns a building from x = 0 to its width. Its front lies in y = 0 and faces -y.
 TriangleMesh buildingMesh(const Building& building) {
   const double width = building.x1 - building.x0, height = building.height;
   Pose upright;

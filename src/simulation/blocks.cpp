@@ -45,7 +45,7 @@ class Pieces {
             levels_[place(column, row)] = block.level;
   }
 
-  /// Rectangles of one level, as large as rows of them can be put together; their corners (x0, y0, x1, y1).
+  /// Returns rectangles of one level each, with rows joined where possible; their corners (x0, y0, x1, y1).
   std::vector<Block> flats() const {
     std::vector<Block> flats;
     std::vector<bool> done(levels_.size(), false);
@@ -70,7 +70,7 @@ class Pieces {
     return flats;
   }
 
-  /// Borders between different levels, in pieces as long as can be; the lower level on the left.
+  /// Returns the borders between different levels, in pieces of maximum length, with the lower level on the left.
   std::vector<Step> steps() const {
     std::vector<Step> steps;
     for (int column = 0; column <= columns_; ++column)
@@ -95,7 +95,8 @@ class Pieces {
     return is_inside ? levels_[place(column, row)] : elsewhere_;
   }
 
-  /// One line of the plane, piece by piece: the levels (left, right) of a piece, the point where it begins.
+  /// Adds the steps along one line of the plane. `levels` gives the levels (left, right) of a piece, `point` the point
+  /// where a piece begins.
   template <typename Levels, typename Point>
   static void addLine(int pieces, const Levels& levels, const Point& point, std::vector<Step>& steps) {
     for (int first = 0, last = 0; first < pieces; first = last) {
@@ -115,7 +116,7 @@ TriangleMesh flat(const Block& block, double height) {
   return rectangleMesh({{block.x0, block.y0, height}, {block.x1 - block.x0, 0, 0}, {0, block.y1 - block.y0, 0}});
 }
 
-/// The same surface seen from its other side.
+/// Returns the same surface, visible from its other side.
 TriangleMesh turnedOver(TriangleMesh mesh) {
   for (TriangleMesh::Triangle& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
   return mesh;
@@ -143,7 +144,7 @@ TriangleMesh terraceMesh(const std::vector<Block>& blocks) {
 
 TriangleMesh roomsMesh(const std::vector<Block>& blocks) {
   const Pieces pieces(blocks, 0.0);
-  TriangleMesh mesh = turnedOver(wallsMesh(pieces.steps()));  // here the open side is the one of the higher ceiling
+  TriangleMesh mesh = turnedOver(wallsMesh(pieces.steps()));  // here the higher ceiling is on the open side
   for (const Block& block : pieces.flats()) {
     if (block.level <= 0.0) continue;
     append(mesh, flat(block, 0.0));

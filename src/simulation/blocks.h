@@ -6,8 +6,8 @@
 
 #include "gaussmap/mesh/triangle_mesh.h"
 
-// Rooms, streets and building fronts are made of rectangles at different levels: painted one over the other on a plane,
-// then turned into exactly the surfaces that can be seen, without any hidden within walls.
+// Rooms, streets and building fronts are made of rectangles at different levels. They are painted one over the other on
+// a plane, then converted to the visible surfaces only. No surface is hidden within a wall.
 namespace gaussmap::simulation {
 
 struct Block {
@@ -15,23 +15,24 @@ struct Block {
   double level;           ///< height, depth or ceiling [m]
 };
 
-/// A step between two levels, above the line between two points of the plane.
+/// A vertical step between two levels, above the line between two points of the plane.
 struct Step {
   Eigen::Vector2d from, to;  ///< the open side is to the left of this direction
   double low, high;          ///< the two levels [m]
 };
 
-/// Blocks from above: tops at their levels and the steps between them; later ones lie over earlier ones. Nothing
-/// where no block is.
+/// Returns the surface of blocks as seen from above: their tops at their levels, and the steps between them. Later
+/// blocks cover earlier ones. Where there is no block, there is no surface.
 TriangleMesh terraceMesh(const std::vector<Block>& blocks);
 
-/// Blocks as free space, 0 up to the level: floor, ceiling, and walls all round. Level 0 is solid.
+/// Returns the surfaces around blocks of free space from height 0 up to their levels: floor, ceiling and all walls. A
+/// block of level 0 is solid.
 TriangleMesh roomsMesh(const std::vector<Block>& blocks);
 
-/// The walls round free space (level > 0): straight pieces as long as can be, free space on the left.
+/// Returns the walls around free space (level > 0) as straight pieces of maximum length, free space on their left.
 std::vector<Step> outline(std::vector<Block> blocks);
 
-/// Vertical faces over lines, visible from their left.
+/// Returns vertical faces above the lines, visible from their left.
 TriangleMesh wallsMesh(const std::vector<Step>& steps);
 
 }  // namespace gaussmap::simulation

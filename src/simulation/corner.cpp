@@ -8,8 +8,8 @@ using namespace detail;
 
 namespace {
 
-/// From the plan (floor from (0, 0) to (20, 12), z = 0) to the map. The floor ends up 4 cm above a border between
-/// cells, and no wall is parallel to one.
+/// Returns the pose from the plan (floor from (0, 0) to (20, 12), z = 0) to the map. In the map, the floor lies 4 cm
+/// above a border between cells, and no wall is parallel to such a border.
 Pose cornerPlacement() {
   return {{-7.3, -5.1, 0.04}, turned(17.0, 0.0, 0.0)};
 }

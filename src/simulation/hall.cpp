@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A hall of 18 m x 12 m, a corridor behind it, two rooms on either side of that.
+// A hall of 18 m x 12 m, a corridor behind it, and two rooms on either side of the corridor.
 #include "mesh/shapes.h"
 #include "simulation/worlds.h"
 

@@ -15,7 +15,7 @@ using namespace detail;
 
 namespace {
 
-constexpr std::size_t kGrain = 16;  // columns a task
+constexpr std::size_t kGrain = 16;  // columns per task
 constexpr double kGrazing = 1e-4;
 
 template <typename Options>
@@ -54,7 +54,7 @@ int rings(const PlanarLaserOptions&) {
   return 1;
 }
 
-/// Unit vector of one laser, sensor frame.
+/// Returns the unit vector of one laser, sensor frame.
 Eigen::Vector3d beam(const LidarOptions& options, int ring, int column) {
   const double step = options.rings > 1 ? (options.highest_deg - options.lowest_deg) / (options.rings - 1) : 0.0;
   const double elevation = (options.lowest_deg + ring * step) * kDegree;
@@ -86,7 +86,7 @@ SimulatedScan scanWorld(const World& world, const Pose& sensor_pose, const Optio
     for (int ring = 0; ring < rings(options); ++ring) {
       const Eigen::Vector3d direction = beam(options, ring, static_cast<int>(column));
       const Ray ray{scan.pose.translation, rotation * direction};
-      const double noise = options.noise * random.normal();  // drawn for every ray: a new object moves no other point
+      const double noise = options.noise * random.normal();  // for every ray, so a new object changes no other noise
       const std::optional<World::Hit> hit = world.intersect(ray, time, options.max_range);
       if (!hit || hit->cosine < kGrazing || hit->range > options.max_range || hit->range + noise <= 0.0) continue;
       part.points.emplace_back((hit->range + noise) * direction);

@@ -10,9 +10,9 @@ namespace gaussmap::simulation {
 namespace {
 
 constexpr int kRoundings = 3;
-constexpr double kLook = 0.3;  // the way looks from so far behind to so far ahead [m]
+constexpr double kLook = 0.3;  // the direction of the path is taken from this far behind to this far ahead [m]
 
-/// Each corner is cut off twice, by a quarter of its sides (Chaikin).
+/// Returns the line with each corner cut off, at a quarter of its two sides (Chaikin).
 std::vector<Eigen::Vector2d> cornersCut(const std::vector<Eigen::Vector2d>& line) {
   std::vector<Eigen::Vector2d> cut{line.front()};
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
@@ -23,7 +23,7 @@ std::vector<Eigen::Vector2d> cornersCut(const std::vector<Eigen::Vector2d>& line
   return cut;
 }
 
-/// Part i of count - 1 of a whole; 0 for a single one.
+/// Returns the share i / (count - 1); 0 if count is 1.
 double part(int i, int count) {
   return count > 1 ? double(i) / (count - 1) : 0.0;
 }

@@ -9,24 +9,25 @@
 
 namespace gaussmap::simulation {
 
-/// Yaw, then pitch, then roll [degree].
+/// Returns the rotation by yaw, then pitch, then roll [degree].
 Pose::Rotation turned(double yaw, double pitch, double roll);
 
-/// Where a body is that is placed by `first` within what is placed by `second`.
+/// Returns the product second * first: the pose of a body that `first` places in a frame, which `second` places.
 Pose chained(const Pose& second, const Pose& first);
 
 struct PathOptions {
-  double height = 1.8;  ///< of the sensor above the plan [m]
+  double height = 1.8;  ///< height of the sensor above the plan [m]
   double speed = 1.0;   ///< [m/s]
-  double sway = 1.0;    ///< how much the sensor rolls and pitches on the way; 1: half a degree, as vehicles do
+  double sway = 1.0;    ///< how much the sensor rolls and pitches on the way; 1: half a degree, like a vehicle
 };
 
-/// `count` poses evenly spaced in time along a polyline with rounded corners, looking ahead; moved by `placement`.
+/// Returns `count` poses along a polyline with rounded corners, evenly spaced in time. The sensor looks ahead.
+/// `placement` moves the poses from the plan to the map.
 std::vector<TimedPose> drive(const std::vector<Eigen::Vector2d>& waypoints, int count, const PathOptions& options,
                              const Pose& placement);
 
-/// `count` poses evenly spaced along a few given ones, those included if their number is `count`, `step` [s] from one
-/// given pose to the next.
+/// Returns `count` poses interpolated evenly along the given poses. If `count` is their number, these are the given
+/// poses. `step`: time from one given pose to the next [s].
 std::vector<TimedPose> interpolated(const std::vector<Pose>& poses, int count, double step);
 
 }  // namespace gaussmap::simulation

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A floor plan of 28 m x 16 m: four rooms on either side of a corridor, walls of 12 cm between them.
+// A floor plan of 28 m x 16 m: four rooms on either side of a corridor, with walls of 12 cm between them.
 #include <cmath>
 
 #include "simulation/worlds.h"
@@ -8,7 +8,7 @@ namespace gaussmap::simulation {
 namespace {
 
 constexpr double kFree = 1.0, kSolid = 0.0;  // levels of the blocks
-constexpr double kLow = -1.0, kHigh = 1.5;   // of the walls; the laser looks along z = 0 [m]
+constexpr double kLow = -1.0, kHigh = 1.5;   // heights of the walls [m]; the laser plane is z = 0
 
 std::vector<Block> blocks() {
   return {{0, 7, 28, 9.2, kFree},  // corridor
@@ -25,7 +25,7 @@ std::vector<Block> blocks() {
           {17.4, 12.4, 17.8, 12.8, kSolid}};                              // a square column
 }
 
-/// A closed line of corners, clockwise round something solid.
+/// Adds the walls of a solid body. `corners` are a closed line, clockwise around the body.
 void addSolid(const std::vector<Eigen::Vector2d>& corners, std::vector<Step>& steps) {
   for (std::size_t i = 0; i < corners.size(); ++i)
     steps.push_back({corners[i], corners[(i + 1) % corners.size()], kLow, kHigh});

@@ -28,7 +28,7 @@ Simulation corner(const SimulationOptions& options) {
   return {World(cornerMesh()), interpolated(poses, scans, kStep), LidarOptions()};
 }
 
-/// Street or avenue: the same way through it, the same traffic.
+/// Returns the street or the avenue, which have the same trajectory and the same traffic.
 Simulation street(const TriangleMesh& mesh, const SimulationOptions& options) {
   const Pose placement = streetPlacement();
   std::vector<MovingObject> moving;
@@ -62,7 +62,7 @@ Simulation plan(const SimulationOptions& options) {
 Simulation makeSimulation(WorldName name, const SimulationOptions& options) {
   require(options.scans >= 0, "scans", options.scans, "must not be negative");
   if (options.moving && name != WorldName::Street && name != WorldName::Avenue)
-    throw std::invalid_argument("only street and avenue have moving objects");
+    throw std::invalid_argument("moving objects: only the worlds street and avenue have them");
   switch (name) {
     case WorldName::Street:
       return street(streetMesh(), options);

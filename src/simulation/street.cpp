@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kStreetKerb = 0.12;  // height of the sidewalk [m]
 
-/// 15 m of front each, a gap after every fourth.
+/// Adds buildings with a front of 15 m each, and a gap after every fourth.
 void addBuildings(TriangleMesh& mesh, double side) {
   for (int i = 0; i < 10; ++i) {
     const double x = -20 + 15.0 * i, width = i % 4 == 3 ? 12.0 : 15.0;
@@ -22,7 +22,7 @@ void addBuildings(TriangleMesh& mesh, double side) {
   }
 }
 
-/// From the first to the end of the street, `step` [m] apart.
+/// Returns the places from `first` to the end of the street, `step` [m] apart.
 std::vector<double> placesAlong(double first, double step) {
   std::vector<double> places;
   for (int k = 0; first + step * k < 130.0; ++k) places.push_back(first + step * k);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What stands, parks and walks in the built-in worlds.
+// Furniture, plants, vehicles and people of the built-in worlds.
 #include <cmath>
 
 #include "gaussmap/core/gaussian.h"
@@ -55,7 +55,7 @@ TriangleMesh pedestrianMesh() {
 }
 
 TriangleMesh treeMesh(double trunk, double crown, unsigned seed) {
-  constexpr double kRough = 0.1;  // of the radius
+  constexpr double kRough = 0.1;  // share of the radius
   TriangleMesh leaves = ellipsoidMesh({0, 0, 0}, {crown, crown, 0.85 * crown}, 32);
   Random random(seed);
   for (Eigen::Vector3d& vertex : leaves.vertices) vertex *= 1.0 + kRough * (2.0 * random.uniform() - 1.0);
@@ -110,7 +110,7 @@ TriangleMesh chairMesh() {
 }
 
 TriangleMesh shelfMesh(double length) {
-  TriangleMesh mesh = boxMesh({-0.02, 0, 0}, {0, length, 2.0});  // the back, the boards in front of it
+  TriangleMesh mesh = boxMesh({-0.02, 0, 0}, {0, length, 2.0});  // the back; the boards are in front of it
   for (int board = 0; board <= 5; ++board) {
     const double z = 0.05 + 0.38 * board;
     append(mesh, boxMesh({0, 0, z}, {0.32, length, z + 0.03}));

@@ -21,7 +21,7 @@ std::optional<World::Hit> World::intersect(const Ray& ray, double time, double m
   if (const auto hit = tree_.intersect(ray.origin, ray.direction, max_range))
     first = Hit{hit->range, hit->cosine, SurfaceLabel::Static};
   for (std::size_t i = 0; i < moving_.size(); ++i) {
-    // The object stays where it was at time 0, the ray moves the other way.
+    // Moves the ray against the velocity instead of the object, which stays at its place of time 0.
     const Eigen::Vector3d origin = ray.origin - time * moving_[i].velocity;
     const double limit = first ? first->range : max_range;
     const auto hit = moving_trees_[i].intersect(origin, ray.direction, limit);

@@ -11,23 +11,23 @@
 
 namespace gaussmap {
 
-/// A half-line; range r along it is the point origin + r direction.
+/// A half-line. The point at range r is origin + r direction.
 struct Ray {
   Eigen::Vector3d origin;     ///< [m]
   Eigen::Vector3d direction;  ///< unit length
 };
 
-/// A body that moves on a straight line without turning.
+/// A body that moves along a straight line without rotation.
 struct MovingObject {
   TriangleMesh mesh;         ///< where it is at time 0 [m], map frame
   Eigen::Vector3d velocity;  ///< [m/s], map frame
 };
 
-/// What a ray met.
+/// The kind of surface that a ray hit.
 enum class SurfaceLabel : std::uint32_t { Static = 0, Moving = 1 };
 
-/// A world whose surfaces are known exactly: rays meet the triangles of its meshes, so that a scan without noise lies
-/// on them.
+/// A world whose surfaces are known exactly. Rays hit the triangles of its meshes, so the points of a scan without
+/// noise lie on them.
 class World {
  public:
   struct Hit {
@@ -42,7 +42,7 @@ class World {
   const TriangleMesh& mesh() const { return mesh_; }  ///< everything that does not move
   const std::vector<MovingObject>& moving() const { return moving_; }
 
-  /// First surface that the ray meets at that time [s], up to a range [m]; nullopt if there is none.
+  /// Returns the first surface that the ray hits at this time [s], up to max_range [m]; std::nullopt if there is none.
   std::optional<Hit> intersect(const Ray& ray, double time, double max_range) const;
 
  private:

@@ -9,27 +9,28 @@
 #include "simulation/path.h"
 #include "simulation/world.h"
 
-// The built-in worlds: in the map, or in a plan of their own with the pose that turns the plan into the map.
+// The built-in worlds. They are given in the map frame, or in a plan frame with the pose that moves the plan
+// to the map.
 namespace gaussmap::simulation {
 
-TriangleMesh cornerMesh();             ///< map: floor, long wall, short wall, pole, in this order
-std::vector<Pose> cornerTrajectory();  ///< map: drives along both walls past the pole, rolling and pitching slightly
+TriangleMesh cornerMesh();             ///< map frame: floor, long wall, short wall, pole, in this order
+std::vector<Pose> cornerTrajectory();  ///< map frame: along both walls past the pole, with slight roll and pitch
 
 Pose streetPlacement();                     ///< of street and avenue
-TriangleMesh streetMesh();                  ///< plan
-TriangleMesh avenueMesh();                  ///< plan
-std::vector<MovingObject> streetTraffic();  ///< plan
-std::vector<Eigen::Vector2d> streetPath();  ///< plan
+TriangleMesh streetMesh();                  ///< plan frame
+TriangleMesh avenueMesh();                  ///< plan frame
+std::vector<MovingObject> streetTraffic();  ///< plan frame
+std::vector<Eigen::Vector2d> streetPath();  ///< plan frame
 
 Pose hallPlacement();
 TriangleMesh hallMesh();
 std::vector<Eigen::Vector2d> hallPath();
 
 Pose planPlacement();
-std::vector<Step> planOutline();  ///< plan, with the heights of the walls
+std::vector<Step> planOutline();  ///< plan frame, with the heights of the walls
 std::vector<Eigen::Vector2d> planPath();
 
-// Things to put into them, standing on z = 0 at the origin, looking along x.
+// Objects for these worlds. They stand on z = 0 at the origin and face along x.
 TriangleMesh carMesh();
 TriangleMesh vanMesh();
 TriangleMesh pedestrianMesh();
@@ -43,7 +44,7 @@ TriangleMesh chairMesh();
 TriangleMesh shelfMesh(double length);
 TriangleMesh sofaMesh();
 
-/// A piece at a place of the plan, turned by `yaw` [degree].
+/// Returns an object moved to a place of the plan [m] and rotated by `yaw` [degree].
 TriangleMesh placed(const TriangleMesh& mesh, double x, double y, double z, double yaw);
 
 }  // namespace gaussmap::simulation

@@ -54,7 +54,7 @@ vtkSmartPointer<vtkActor> actorOf(vtkPolyData* data) {
   return actor;
 }
 
-/// Without light: lines and points keep their colour from every side.
+/// Switches the light off: lines and points have the same colour from every side.
 void makeFlat(vtkActor& actor, const Colour& colour, double opacity) {
   actor.GetProperty()->LightingOff();
   actor.GetProperty()->SetColor(colour[0] / 255.0, colour[1] / 255.0, colour[2] / 255.0);
@@ -70,7 +70,7 @@ vtkSmartPointer<vtkPolyData> unitSphere(int facets) {
   normals->SetNumberOfComponents(3);
   for (const Eigen::Vector3d& vertex : mesh.vertices) {
     insert(*points, vertex);
-    normals->InsertNextTuple(vertex.data());  // on a unit sphere the same
+    normals->InsertNextTuple(vertex.data());  // on a unit sphere, normal and vertex are equal
   }
   vtkNew<vtkCellArray> triangles;
   for (const TriangleMesh::Triangle& triangle : mesh.triangles)

@@ -12,34 +12,37 @@
 #include "viewer/colouring.h"
 #include "viewer/glyphs.h"
 
-// Pieces of the picture, all about the origin of the scene.
+// Parts of the picture. All coordinates are relative to the origin of the scene.
 namespace gaussmap {
 
-/// A unit sphere of `facets` round its equator.
+/// Returns a unit sphere with this number of facets around its equator.
 vtkSmartPointer<vtkPolyData> unitSphere(int facets);
-/// As round as so many of them can be drawn smoothly; the second while the view moves.
+/// Returns the numbers of facets for this many ellipsoids: for a still view, and for a moving view. With more facets
+/// the drawing would not be smooth.
 std::pair<int, int> facetsFor(std::size_t glyphs);
 
-/// All ellipsoids by one call to the graphics card: the sphere once, and its places.
+/// Returns an actor that draws all ellipsoids with one call to the graphics card: one sphere at many places.
 vtkSmartPointer<vtkActor> ellipsoidActor(const std::vector<Glyph>& glyphs, const std::vector<detail::Colour>& colours,
                                          vtkPolyData* sphere);
 
-/// Their centres as coloured points, of many an even choice: what a machine without a graphics card can turn.
+/// Returns an actor that draws the centres as coloured points; if there are many, an even selection. A computer without
+/// a graphics card can draw these fast enough.
 vtkSmartPointer<vtkActor> centreActor(const std::vector<Glyph>& glyphs, const std::vector<detail::Colour>& colours);
 
 struct Cube {
   Vector<3> centre;
   double side;
 };
-/// The edges of boxes.
+/// Returns an actor that draws the edges of cubes.
 vtkSmartPointer<vtkActor> cubeActor(const std::vector<Cube>& cubes);
 
-/// Lines between two points each.
+/// Returns an actor that draws lines between pairs of points.
 vtkSmartPointer<vtkActor> linkActor(const std::vector<std::pair<Vector<3>, Vector<3>>>& links);
 
 vtkSmartPointer<vtkActor> pointActor(const std::vector<Vector<3>>& points, const Vector<3>& origin);
 
-/// Segments as upright walls of this height [m], each chain in a colour, a pale band on the ground where it is free.
+/// Returns actors that draw segments as vertical walls of this height [m]. Each chain has a colour; a pale band on the
+/// ground shows the free side.
 std::vector<vtkSmartPointer<vtkActor>> segmentActors(const SegmentMap& map, const Vector<3>& origin, double height);
 
 }  // namespace gaussmap

@@ -8,18 +8,18 @@
 namespace gaussmap {
 namespace {
 
-constexpr double kHalfAngle = 15.0;  // of what the eye sees from bottom to top [degree]
+constexpr double kHalfAngle = 15.0;  // half of the vertical field of view [degree]
 constexpr double kMargin = 1.06;
 constexpr double kNearest = 1.0;  // [m]
 constexpr int kSteps = 4;
-constexpr std::size_t kOutermost = 200;  // one in so many points of either end of an axis may lie outside
+constexpr std::size_t kOutermost = 200;  // one in this many points may lie outside at either end of an axis
 
 struct Span {
   double low, high;
   double middle() const { return 0.5 * (low + high); }
 };
 
-/// Where the points lie along an axis, without the outermost.
+/// Returns the range of the points along an axis, without the outermost.
 Span spanAlong(const Vector<3>& axis, const std::vector<Vector<3>>& points) {
   std::vector<double> places;
   places.reserve(points.size());
@@ -29,14 +29,14 @@ Span spanAlong(const Vector<3>& axis, const std::vector<Vector<3>>& points) {
   return {places[cut], places[last - cut]};
 }
 
-/// What points up in the picture where one looks along what is up in the world: y, or what is left.
+/// Returns the up direction of the picture: `up`, or y if the view is along `up`, or -z if `up` is y as well.
 Vector<3> upInPicture(const Vector<3>& up, const Vector<3>& back) {
   for (const Vector<3>& candidate : {up, Vector<3>(0, 1, 0)})
     if (candidate.cross(back).norm() > 1e-3 * candidate.norm()) return candidate;
   return {0, 0, -1};
 }
 
-/// From where all but the outermost points are seen [m before the middle].
+/// Returns the distance of the eye from the middle at which all but the outermost points are visible [m].
 double distanceFor(const Vector<3>& middle, const Vector<3>& right, const Vector<3>& up, const Vector<3>& back,
                    const std::vector<Vector<3>>& points, double tangent, double aspect, bool perspective) {
   std::vector<double> needed;
@@ -61,7 +61,7 @@ void aim(vtkCamera& camera, const ViewPoint& view, const Vector<3>& upwards, con
                      spanAlong(back, points).middle() * back;
   if (view.middle) middle = *view.middle - origin;
   double distance = distanceFor(middle, right, up, back, points, tangent, aspect, view.perspective);
-  // With perspective what is near looks larger, so the middle of the picture is not that of the scene.
+  // With perspective, near objects look larger, so the middle of the picture is not the middle of the scene.
   for (int step = 0; step < kSteps && view.perspective && !view.middle; ++step) {
     std::vector<Vector<3>> seen;  // on the plane through the middle
     for (const Vector<3>& point : points) {

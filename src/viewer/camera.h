@@ -9,7 +9,8 @@
 
 namespace gaussmap {
 
-/// Looks at points (about the scene's origin) so that all but the outermost lie in a picture of this width / height.
+/// Places the camera to look at points (relative to the scene's origin). All points but the outermost lie within a
+/// picture of this aspect (width / height).
 void aim(vtkCamera& camera, const ViewPoint& view, const Vector<3>& up, const std::vector<Vector<3>>& points,
          const Vector<3>& origin, double aspect);
 

@@ -16,18 +16,18 @@ namespace {
 
 constexpr Colour kGrey = {150, 150, 150};
 constexpr int kBarSteps = 256;
-/// Okabe and Ito 2008: told apart by everybody.
+/// Okabe and Ito 2008: colour-blind people can distinguish these colours too.
 constexpr Colour kScales[] = {{86, 180, 233},  {230, 159, 0}, {0, 158, 115},
                               {204, 121, 167}, {0, 114, 178}, {213, 94, 0}};
 
-/// A gentler form of errorColour(), from 0 to `red`.
+/// Returns a paler form of errorColour(), from 0 to `red`.
 Colour errorTint(double error, double red) {
   const std::uint32_t rgb = errorColour(error, red);
   const auto channel = [rgb](int shift) { return static_cast<std::uint8_t>(40 + (rgb >> shift & 0xffu) * 200 / 255); };
   return {channel(16), channel(8), channel(0)};
 }
 
-/// Equal steps of `colour`, a function of the value.
+/// Returns a colouring with a continuous bar. `colour` gives the colour of a value.
 template <typename ColourOf>
 Colouring continuous(std::string title, const std::vector<double>& values, double low, double high,
                      const ColourOf& colour) {

@@ -36,7 +36,7 @@ vtkSmartPointer<vtkActor2D> textActor(const std::string& text, Corner corner, in
   actor->SetInput(text.c_str());
   setText(*actor->GetTextProperty(), fontSize(height));
   actor->GetTextProperty()->SetBackgroundColor(1.0, 1.0, 1.0);
-  actor->GetTextProperty()->SetBackgroundOpacity(0.6);  // it may stand on anything
+  actor->GetTextProperty()->SetBackgroundOpacity(0.6);  // readable in front of any colour
   const bool right = corner == Corner::TopRight, top = corner != Corner::BottomLeft;
   actor->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
   actor->SetPosition(right ? 0.985 : 0.015, top ? 0.98 : 0.02);
@@ -56,7 +56,7 @@ vtkSmartPointer<vtkActor2D> barOf(const Colouring& colouring, int height) {
     table->SetTableValue(i, colour[0] / 255.0, colour[1] / 255.0, colour[2] / 255.0);
   }
   const auto label = [&](double end) { return std::abs(end) < 1e-6 * (colouring.high - colouring.low) ? 0.0 : end; };
-  table->SetTableRange(label(colouring.low), label(colouring.high));  // no -1.39e-17 where a floor is meant
+  table->SetTableRange(label(colouring.low), label(colouring.high));  // writes 0 instead of -1.39e-17
   const auto bar = vtkSmartPointer<vtkScalarBarActor>::New();
   bar->SetNumberOfLabels(5);
   bar->SetLabelFormat("%-.3g");

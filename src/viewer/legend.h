@@ -13,10 +13,10 @@ namespace gaussmap {
 
 enum class Corner { TopLeft, TopRight, BottomLeft };
 
-/// Lines of text in a corner of a picture of that height [pixels].
+/// Returns lines of text in a corner of a picture of this height [pixels].
 vtkSmartPointer<vtkActor2D> textActor(const std::string& text, Corner corner, int height);
 
-/// What the colours mean: numbers beside a bar, or names on their colours.
+/// Returns the legend of the colours: a bar with numbers, or names on their colours.
 std::vector<vtkSmartPointer<vtkActor2D>> colourBar(const Colouring& colouring, int height);
 
 }  // namespace gaussmap

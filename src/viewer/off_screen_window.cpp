@@ -17,7 +17,7 @@
 namespace gaussmap {
 namespace {
 
-/// Debian's VTK draws through X only, but it takes a context that somebody else has made.
+/// Debian's VTK can create only X contexts, but it draws into any context. This class creates an EGL context.
 class EglWindow : public vtkGenericOpenGLRenderWindow {
  public:
   static EglWindow* New() {
@@ -26,7 +26,7 @@ class EglWindow : public vtkGenericOpenGLRenderWindow {
     return made;
   }
 
-  /// False where EGL has no desktop OpenGL 3.2 without a surface.
+  /// Returns false if EGL has no desktop OpenGL 3.2 without a surface.
   bool createContext() {
     display_ = surfacelessDisplay();
     if (display_ == EGL_NO_DISPLAY || !eglInitialize(display_, nullptr, nullptr)) return false;
@@ -44,7 +44,7 @@ class EglWindow : public vtkGenericOpenGLRenderWindow {
 
   void OpenGLInitContext() override {
     if (this->Initialized) return;
-    // GLEW first loads OpenGL, then asks for GLX, which is not there and not needed.
+    // GLEW first loads OpenGL, then looks for GLX, which is missing and not needed.
     const GLenum loaded = glewInit();
     this->GlewInitValid = loaded == GLEW_OK || loaded == GLEW_ERROR_NO_GLX_DISPLAY;
     this->Initialized = true;
@@ -89,7 +89,7 @@ vtkSmartPointer<vtkRenderWindow> makeOffScreenWindow() {
   if (!window->createContext()) {
     if (!hasDisplay())
       throw std::runtime_error(
-          "no picture can be drawn: EGL has no OpenGL (Debian: libegl-mesa0) and there is no display (try xvfb-run "
+          "cannot draw a picture: EGL has no OpenGL (Debian: libegl-mesa0) and there is no display (try xvfb-run "
           "-a)");
     made = vtkSmartPointer<vtkRenderWindow>::New();
   }

@@ -6,11 +6,11 @@
 
 namespace gaussmap {
 
-/// Can a window be opened on the X server that DISPLAY names? (VTK ends the program where not.)
+/// Returns true if a window can be opened on the X server that DISPLAY names. (If not, VTK would end the program.)
 bool hasDisplay();
 
-/// A window that is never seen: by EGL without a display, else on the display.
-/// Throws std::runtime_error, with the way out, where there is neither.
+/// Returns a window that is never visible: by EGL without a display, or else on the display.
+/// Throws std::runtime_error, with a remedy, if there is neither.
 vtkSmartPointer<vtkRenderWindow> makeOffScreenWindow();
 
 }  // namespace gaussmap

@@ -18,7 +18,7 @@ using namespace detail;
 
 namespace {
 
-/// The middle of a map, so that floats lose nothing.
+/// Returns a point near the middle of the map. Coordinates relative to it are precise enough as floats.
 Vector<3> originOf(const ViewScene& scene) {
   if (const auto* map = std::get_if<GaussianMap<3>>(&scene.map)) return middleOf(*map);
   const std::vector<Segment>& segments = std::get<SegmentMap>(scene.map).segments;
@@ -26,7 +26,7 @@ Vector<3> originOf(const ViewScene& scene) {
   return {segments.front().start.x(), segments.front().start.y(), 0.0};
 }
 
-/// As VTK has it: rows from the bottom, three bytes a pixel.
+/// Draws the picture. The result is in VTK's order: rows from the bottom, three bytes per pixel.
 vtkSmartPointer<vtkImageData> grab(vtkRenderer& renderer, int width, int height) {
   const vtkSmartPointer<vtkRenderWindow> window = makeOffScreenWindow();
   window->SetSize(width, height);

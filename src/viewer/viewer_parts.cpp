@@ -38,7 +38,7 @@ Box<3> boxOf(const SegmentMap& map) {
   return box;
 }
 
-/// A little brighter or darker, so that ellipsoids of one plane are told apart.
+/// Makes a colour slightly brighter or darker, to distinguish the ellipsoids of one plane.
 Colour shadeOf(Colour colour, std::size_t index) {
   constexpr double kMost = 0.14, kGoldenRatio = 0.6180339887498949;  // its multiples are spread evenly
   const double share = std::fmod(static_cast<double>(index) * kGoldenRatio, 1.0);
@@ -61,7 +61,7 @@ int scaleToShow(const GaussianMap<3>& map) {
 
 void Viewer::Parts::check() const {
   const bool empty = map() != nullptr ? map()->empty() : std::get<SegmentMap>(scene.map).segments.empty();
-  if (empty) throw std::invalid_argument("there is nothing in " + scene.name + " to look at");
+  if (empty) throw std::invalid_argument(scene.name + " is empty: there is nothing to show");
   if (map() != nullptr && options.scale && (*options.scale < 0 || *options.scale >= map()->scales()))
     throw std::invalid_argument("scale " + std::to_string(*options.scale) + ": the map has the scales 0 to " +
                                 std::to_string(map()->scales() - 1));
@@ -70,16 +70,16 @@ void Viewer::Parts::check() const {
           "must be above 0 and at most 1000000");
   for (const Vector<3>& direction : {options.view.direction, options.up})
     if (!direction.allFinite() || !(direction.norm() > 1e-6))
-      throw std::invalid_argument("a direction to look from, and one that is up, must be longer than zero");
+      throw std::invalid_argument("the view direction and the up direction must be finite and not zero");
   if (options.view.middle && !options.view.middle->allFinite())
-    throw std::invalid_argument("the place to look at must be finite");
+    throw std::invalid_argument("the point to look at must be finite");
 }
 
 void Viewer::Parts::build(int width, int height) {
   renderer->RemoveAllViewProps();
   ellipsoids.clear();
   if (renderer->GetLights()->GetNumberOfItems() == 0) {
-    vtkNew<vtkLightKit> lights;  // a key light from above, weaker ones from elsewhere, all moving with the eye
+    vtkNew<vtkLightKit> lights;  // a key light from above and weaker lights; all move with the eye
     lights->SetKeyLightIntensity(0.75);
     lights->SetKeyToFillRatio(2.0);
     lights->SetKeyToHeadRatio(2.2);
@@ -124,7 +124,7 @@ std::vector<Vector<3>> Viewer::Parts::addMap(int height) {
   if (options.cells) addCells(shown, lift);
   if (!options.hierarchy) return places;
   addLinks(scales, lift);
-  std::vector<Vector<3>> corners;  // of the lowest and the highest scale, which has few Gaussians to be seen by
+  std::vector<Vector<3>> corners;  // of the finest and the coarsest scale, which has few Gaussians
   for (const int s : {scales.front(), scales.back()})
     for (int corner = 0; corner < 8; ++corner)
       corners.push_back(extent.low - origin + lift * s * up() +
@@ -139,7 +139,7 @@ void Viewer::Parts::addEllipsoids(const std::vector<GaussianId>& gaussians, cons
       colouringOf(*map(), gaussians, by, by.by == ColourBy::Error ? errorsOf(gaussians) : std::vector<double>{});
   std::vector<Colour> shades = colouring.colours;
   for (std::size_t i = 0; i < shades.size(); ++i) shades[i] = shadeOf(shades[i], i);
-  // Scale by scale, for a coarse one has few and large ellipsoids, which need more facets than many small ones.
+  // Scale by scale, because a coarse scale has few large ellipsoids, which need more facets than many small ones.
   for (std::size_t first = 0, last = 0; first < glyphs.size(); first = last) {
     while (last < glyphs.size() && gaussians[last].scale == gaussians[first].scale) ++last;
     const auto part = [first = std::ptrdiff_t(first), last = std::ptrdiff_t(last)](const auto& all) {

@@ -13,26 +13,26 @@
 
 namespace gaussmap {
 
-/// How much of each ellipsoid is drawn.
+/// The level of detail of the ellipsoids.
 enum class Detail { Round, FewTriangles, Point };
 
-/// What a viewer keeps: the scene, what is shown of it, and VTK's renderer with it.
+/// The state of a viewer: the scene, the options, and VTK's renderer.
 struct Viewer::Parts {
   ViewScene scene;
   ViewOptions options;
-  ViewPoint first_view;                  // what the key r goes back to
-  Vector<3> origin = Vector<3>::Zero();  ///< of all actors [m, map frame]
+  ViewPoint first_view;                  // view that the key r restores
+  Vector<3> origin = Vector<3>::Zero();  ///< origin of all actors [m, map frame]
   vtkNew<vtkRenderer> renderer;
-  bool is_aimed = false;                                                ///< false: the camera is to be placed anew
-  std::map<Detail, std::vector<vtkSmartPointer<vtkActor>>> ellipsoids;  ///< those of one detail are visible
-  std::map<int, std::vector<double>> errors;                            ///< of a scale, once asked for
+  bool is_aimed = false;                                                ///< false: build() must place the camera
+  std::map<Detail, std::vector<vtkSmartPointer<vtkActor>>> ellipsoids;  ///< only those of one Detail are visible
+  std::map<int, std::vector<double>> errors;                            ///< per scale, computed on first use
 
   const GaussianMap<3>* map() const { return std::get_if<GaussianMap<3>>(&scene.map); }
-  /// Throws std::invalid_argument as Viewer().
+  /// Throws std::invalid_argument like Viewer().
   void check() const;
   /// Fills the renderer for a picture of this size.
   void build(int width, int height);
-  /// Of the ellipsoids: Round after build().
+  /// Sets the detail of the ellipsoids. After build() it is Detail::Round.
   void setDetail(Detail detail);
   bool press(const std::string& key);
   Vector<3> up() const { return options.up.normalized(); }

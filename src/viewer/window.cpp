@@ -12,10 +12,11 @@
 namespace gaussmap {
 namespace {
 
-constexpr double kSlow = 0.1;               // of a picture while the view moves [s]: the hand goes on before the eye
-constexpr unsigned long kWheelRests = 300;  // after its last notch [ms]
+constexpr double kSlow = 0.1;               // maximum time per picture while the view moves [s]
+constexpr unsigned long kWheelRests = 300;  // pause after the last notch that ends a turn of the wheel [ms]
 
-/// VTK's way to turn, shift and zoom, with our keys; few triangles while the view moves, points where that is slow.
+/// VTK's style to rotate, shift and zoom, with our keys. It draws few triangles while the view moves, or points if
+/// triangles are too slow.
 class Style : public vtkInteractorStyleTrackballCamera {
  public:
   static Style* New() {
@@ -25,7 +26,7 @@ class Style : public vtkInteractorStyleTrackballCamera {
   }
   Viewer::Parts* parts = nullptr;
 
-  void OnChar() override {}  // VTK's own keys
+  void OnChar() override {}  // disables VTK's own keys
   void OnKeyPress() override {
     const std::string key = this->Interactor->GetKeySym() != nullptr ? this->Interactor->GetKeySym() : "";
     if (key == "q" || key == "Escape") {
@@ -47,7 +48,7 @@ class Style : public vtkInteractorStyleTrackballCamera {
     parts->setDetail(moving_);
     vtkInteractorStyleTrackballCamera::StartState(state);
   }
-  void StopState() override {  // draws
+  void StopState() override {  // the call below draws
     if (!is_in_wheel_) parts->setDetail(Detail::Round);
     vtkInteractorStyleTrackballCamera::StopState();
   }
@@ -71,7 +72,7 @@ class Style : public vtkInteractorStyleTrackballCamera {
   Style() = default;
 
  private:
-  /// Draws so many pictures of a moving view.
+  /// Draws this number of pictures of a moving view, and measures the time.
   template <typename Draw>
   void move(int pictures, const Draw& draw) {
     const auto start = std::chrono::steady_clock::now();
@@ -80,11 +81,12 @@ class Style : public vtkInteractorStyleTrackballCamera {
     this->Interactor->GetRenderWindow()->WaitForCompletion();
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     slow_pictures_ = took.count() > pictures * kSlow ? slow_pictures_ + pictures : 0;
-    if (slow_pictures_ < 2) return;  // one may have had to wait for something else
+    if (slow_pictures_ < 2) return;  // a single picture may be slow for another reason
     moving_ = Detail::Point;
     if (this->State != VTKIS_NONE) parts->setDetail(moving_);
   }
-  /// A notch is a motion of its own: what stands is drawn when no other follows.
+  /// Handles a notch of the wheel, which is a motion by itself. If no other notch follows, the timer draws the full
+  /// detail.
   template <typename Draw>
   void turnWheel(const Draw& draw) {
     this->Interactor->DestroyTimer(wheel_timer_);
@@ -104,7 +106,8 @@ class Style : public vtkInteractorStyleTrackballCamera {
 
 void Viewer::show(int width, int height) {
   if (!hasDisplay())
-    throw std::runtime_error("there is no display to open a window on: --png FILE makes a picture without one");
+    throw std::runtime_error(
+        "there is no display to open a window on: use --png FILE to write a picture without a display");
   vtkNew<vtkRenderWindow> window;
   window->SetSize(width, height);
   window->SetMultiSamples(4);
