@@ -93,8 +93,7 @@ struct SegmentStatistics {
 /// segment is split, merged or left unchanged. Four defaults differ from the paper because they give better maps:
 /// - The evidence is kept as moments in cells, not as particles (see EvidencePolicy).
 /// - A split or merge must shorten the description of the map (see DescriptionLengthUtility). In the paper, the
-/// variance
-///   must pass a threshold, eq. (4).
+///   variance must pass a threshold, eq. (4).
 /// - Segments that many rays cross are deleted (see SegmentFitterOptions::prune).
 /// - map() optimises all segments together (see SegmentFitterOptions::optimise).
 ///
