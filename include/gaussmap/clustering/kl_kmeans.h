@@ -73,9 +73,10 @@ class GAUSSMAP_API KLKMeans {
 
 /// Adds one cluster to a partition, Yguel 2009, Algorithm 2.
 ///
-/// K-means runs from the current centres and a new centre at the Gaussian of largest distortion (see ClusterSeed). The
-/// swap loop then moves the centre that is needed least to the Gaussian of largest distortion, as long as the
-/// distortion falls.
+/// K-means runs from the current centres and a new centre at the Gaussian of largest distortion (see ClusterSeed).
+/// While the distortion falls, the swap loop then moves the centre that is needed least to the Gaussian of largest
+/// distortion.
+///
 /// - `current_references` are the k - 1 current cluster centres. If there are none, the result is one cluster.
 /// - The result has at most k clusters. Duplicates in the input can prevent an additional cluster.
 /// - The distortion never exceeds that of the current centres.

@@ -32,10 +32,10 @@ enum class SampleBounds {
 struct SampleOptions {
   std::size_t samples = 100000;  ///< total number, divided according to `share`; `at_least` can increase the total
   std::size_t at_least = 30;     ///< minimum number of samples per Gaussian
-  SampleShare share = SampleShare::Volume;
-  std::uint64_t seed = 1;  ///< same map + same seed = bit-identical samples
-  int threads = 0;         ///< 0 = all cores
-  SampleBounds bounds = SampleBounds::MemberCells;
+  SampleShare share = SampleShare::Volume;          ///< how many samples each Gaussian gets
+  std::uint64_t seed = 1;                           ///< same map + same seed = bit-identical samples
+  int threads = 0;                                  ///< 0 = all cores
+  SampleBounds bounds = SampleBounds::MemberCells;  ///< where samples may lie
 };
 
 /// Samples of a map, ordered by cell, then by Gaussian.

@@ -102,15 +102,15 @@ enum class RefineMethod {
 
 /// Options of refine().
 struct GAUSSMAP_API RefineOptions {
-  RefineMethod method = RefineMethod::Agglomerate;
+  RefineMethod method = RefineMethod::Agglomerate;  ///< how the clusters of a coarse cell are found
   // Agglomerate only:
   MergeCost merge_cost = MergeCost::Volume;  ///< which pair is merged next
   std::optional<CurveOptions> curves;        ///< measures the error of other budgets; D = 3 only
   // Insert only:
   int queue = 0;       ///< p, number of cells refined at a time, >= 1; 0: cells / 250, at least 4
   int max_swaps = 20;  ///< maximum rounds of the swap loop per inserted cluster, >= 0
-  ClusterSeed seed_rule = ClusterSeed::ParentCovariance;
-  std::uint64_t seed = 0;  ///< same map + same seed = bit-identical result
+  ClusterSeed seed_rule = ClusterSeed::ParentCovariance;  ///< centre of a new cluster
+  std::uint64_t seed = 0;                                 ///< same map + same seed = bit-identical result
   // Both:
   int threads = 0;  ///< 0 = all cores
 

@@ -24,11 +24,11 @@ struct GaussianMapFilterOptions {
   /// If > 0: keeps the smallest number of points (within the budget) for which 95 % of the input lie within this
   /// distance [m]. If 0: the budget decides.
   double max_error = 0.0;
-  FilterOutput output = FilterOutput::Means;
-  SplitRule detail =
-      SplitRule::Distance;  ///< Shape: few points on planes; max_error is then the distance from the plane
-  int rounds = 3;           ///< SplitPointsOptions::rounds
-  int threads = 0;          ///< 0 = all cores
+  FilterOutput output = FilterOutput::Means;  ///< means or samples
+  /// Where the output is dense. SplitRule::Shape: few points on planes; max_error is then the distance from the plane.
+  SplitRule detail = SplitRule::Distance;
+  int rounds = 3;   ///< SplitPointsOptions::rounds
+  int threads = 0;  ///< 0 = all cores
 };
 
 /// Downsamples a cloud to a maximum number of points, or to the smallest number that keeps an error limit. It is used

@@ -28,7 +28,7 @@ struct SplitPointsOptions {
   /// If > 0: makes the smallest number of parts for which 95 % of the points have at most this error [m], but at most
   /// max_parts. If 0: makes max_parts parts.
   double max_error = 0.0;
-  SplitRule rule = SplitRule::Distance;
+  SplitRule rule = SplitRule::Distance;    ///< which part is split next
   PartPoint part_point = PartPoint::Mean;  ///< distances are measured from this point of a part
   int rounds = 3;                          ///< rounds of k-means after the splitting, SplitRule::Distance only, >= 0
   int threads = 0;                         ///< 0 = all cores

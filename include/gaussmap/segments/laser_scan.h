@@ -44,8 +44,9 @@ struct LaserScan {
 
 /// Options of planarScan(): which points of a cloud become the sweep of a planar laser.
 struct GAUSSMAP_API PlanarScanOptions {
-  bool slice = false;               ///< for three-dimensional clouds: uses only points with z_min <= z <= z_max
-  double z_min = 0.0, z_max = 0.0;  ///< heights in the map frame [m]
+  bool slice = false;  ///< for three-dimensional clouds: uses only points with z_min <= z <= z_max
+  /// Minimum height of a slice in the map frame [m].
+  double z_min = 0.0, z_max = 0.0;  ///< maximum height of a slice in the map frame [m], >= z_min
   double step = 0.5;                ///< width of a beam of a slice [degrees], 0.01 to 180
   double max_range = std::numeric_limits<double>::infinity();  ///< points farther from the sensor are no returns [m]
 };

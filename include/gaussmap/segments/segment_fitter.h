@@ -35,8 +35,8 @@ struct ParticleOptions {
   /// Maximum number of particles per metre of a segment, > 0. Lengths beyond 10 SegmentFitterOptions::min_length do not
   /// count.
   double per_metre = 300.0;
-  ParticleLimit limit = ParticleLimit::Bins;
-  std::uint64_t seed = 1;  ///< same scans + same seed = same map
+  ParticleLimit limit = ParticleLimit::Bins;  ///< which particles are deleted
+  std::uint64_t seed = 1;                     ///< same scans + same seed = same map
 };
 
 /// Decides how SegmentFitter::map() chooses the segments that explain the most evidence at the lowest cost.
@@ -61,17 +61,17 @@ struct GAUSSMAP_API SegmentFitterOptions {
   /// `SegmentFitter fitter(SegmentFitterOptions::leal2000(), std::make_shared<ViewpointInvariantUtility>());`
   static SegmentFitterOptions leal2000();
 
-  EvidencePolicy policy = EvidencePolicy::MomentCells;
-  ParticleOptions particles;    ///< of EvidencePolicy::ParticleSets
-  SensorNoise noise;            ///< of the laser
-  double cell = 0.1;            ///< length of the cells along a segment [m], > 0
-  double min_length = 1.0;      ///< l_min, limits the particles of a segment [m], > 0
+  EvidencePolicy policy = EvidencePolicy::MomentCells;  ///< how a segment stores its observations
+  ParticleOptions particles;                            ///< of EvidencePolicy::ParticleSets
+  SensorNoise noise;                                    ///< of the laser
+  double cell = 0.1;                                    ///< length of the cells along a segment [m], > 0
+  double min_length = 1.0;                              ///< l_min, limits the particles of a segment [m], > 0
   double min_half_width = 0.1;  ///< minimum half width of the polygon whose observations a segment takes [m], > 0
   double growth = 0.3;          ///< the polygon extends the segment by this length at both ends [m], >= 0
   double gap = 0.5;             ///< adjacent beams are linked if their ends are at most this far apart [m], > 0
   bool prune = true;            ///< deletes segments if many more rays cross them than end on them
   bool optimise = true;         ///< map() decides on all segments together, if the utility is optimisable()
-  SegmentOptimisationOptions optimisation;
+  SegmentOptimisationOptions optimisation;  ///< if `optimise` is set
 };
 
 /// Reports the work of one call of SegmentFitter::add() and the map after it: the curves of Leal 2000 Figs. 7 and 8.

@@ -20,9 +20,12 @@ struct SphericalProjection {
 /// The projection of a depth camera, with x to the right, y down and z forward: column = fx x / z + cx,
 /// row = fy y / z + cy.
 struct PlanarProjection {
-  double fx = 0.0, fy = 0.0;  ///< focal lengths [pixel], > 0
-  double cx = 0.0, cy = 0.0;  ///< principal point [pixel]; the centre of the first pixel is (0, 0)
-  int columns = 0, rows = 0;  ///< size of the image, >= 1
+  /// Horizontal focal length [pixel], > 0.
+  double fx = 0.0, fy = 0.0;  ///< vertical focal length [pixel], > 0
+  /// Column of the principal point [pixel]. The centre of the first pixel is (0, 0).
+  double cx = 0.0, cy = 0.0;  ///< row of the principal point [pixel]
+  /// Number of columns of the image, >= 1.
+  int columns = 0, rows = 0;  ///< number of rows of the image, >= 1
 };
 
 /// The projection of a lidar or of a depth camera.
@@ -52,8 +55,10 @@ GAUSSMAP_API Eigen::Vector3d directionOf(const Projection& projection, Pixel pix
 /// A rectangle of pixels, including both ends. If the projection wraps(), columns can be below 0 or beyond the last
 /// one.
 struct PixelBox {
-  int first_row = 0, last_row = -1;        ///< rows
-  int first_column = 0, last_column = -1;  ///< columns
+  /// First row.
+  int first_row = 0, last_row = -1;  ///< last row
+  /// First column.
+  int first_column = 0, last_column = -1;  ///< last column
   /// Returns true if the rectangle holds no pixel.
   bool empty() const { return last_row < first_row || last_column < first_column; }
 };

@@ -26,10 +26,10 @@ enum class PlyColour {
 
 /// Options of savePly().
 struct GaussianPlyOptions {
-  PlyContent content = PlyContent::Ellipsoids;
-  PlyColour colour = PlyColour::Height;
-  std::optional<int> scale;  ///< the scale to write; std::nullopt: the leaves, see leaves()
-  double sigma = 2.0;        ///< half axes of the ellipsoids, in standard deviations, > 0
+  PlyContent content = PlyContent::Ellipsoids;  ///< ellipsoids, points or splats
+  PlyColour colour = PlyColour::Height;         ///< what the colours show
+  std::optional<int> scale;                     ///< the scale to write; std::nullopt: the leaves, see leaves()
+  double sigma = 2.0;                           ///< half axes of the ellipsoids, in standard deviations, > 0
 };
 
 /// Writes the Gaussians of a map to a binary little-endian PLY file of floats, and returns their number.

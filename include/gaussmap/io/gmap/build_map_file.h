@@ -28,8 +28,9 @@ struct BuildMapFileOptions {
 
 /// The result of buildMapFile().
 struct BuiltMapFile {
-  PointCounts counts;                         ///< what became of the points
-  std::vector<std::size_t> cells, gaussians;  ///< per scale, finest first
+  PointCounts counts;  ///< what became of the points
+  /// Number of cells per scale, finest first.
+  std::vector<std::size_t> cells, gaussians;  ///< number of Gaussians per scale, finest first
 };
 
 /// Builds a map file from scans in limited memory, for maps that do not fit into memory.

@@ -38,10 +38,10 @@ inline constexpr const char* kFinalEntry = "final";
 
 /// Options of save() and savedSize().
 struct SaveOptions {
-  bool overwrite = false;  ///< replaces an existing file
-  int compression = 3;     ///< zstd level
-  int threads = 0;         ///< 0 = all cores
-  Precision precision = Precision::Exact;
+  bool overwrite = false;                  ///< replaces an existing file
+  int compression = 3;                     ///< zstd level
+  int threads = 0;                         ///< 0 = all cores
+  Precision precision = Precision::Exact;  ///< how exactly the map is stored
 };
 
 /// Writes a map to a .gmap file. The same map gives the same bytes.

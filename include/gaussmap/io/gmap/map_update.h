@@ -26,7 +26,8 @@ struct UpdateOptions {
 
 /// The result of updateMap().
 struct MapUpdate {
-  std::vector<std::size_t> cells, gaussians;  ///< of the whole map after the update, per scale, finest first
+  /// Number of cells of the whole map after the update, per scale, finest first.
+  std::vector<std::size_t> cells, gaussians;  ///< number of Gaussians of the whole map, per scale, finest first
   std::size_t tiles_written = 0;              ///< number of changed tiles; the others keep their bytes
   std::size_t tiles = 0;                      ///< number of tiles in the file
 };

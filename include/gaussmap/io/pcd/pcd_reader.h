@@ -36,11 +36,11 @@ struct GAUSSMAP_API PcdHeader {
   std::size_t points = 0;        ///< width * height
   Pose viewpoint;                ///< the sensor's pose as written; the quaternion is not checked, see poseFault()
   bool has_viewpoint = false;    ///< false: the file has no VIEWPOINT, and `viewpoint` is the identity
-  PcdEncoding encoding = PcdEncoding::Ascii;
-  std::size_t record_size = 0;  ///< bytes per point in DATA binary
-  std::size_t columns = 0;      ///< numbers per line in DATA ascii
-  std::size_t data_offset = 0;  ///< bytes before the data
-  std::size_t data_line = 0;    ///< number of the first line of data; the first line of the file is 1
+  PcdEncoding encoding = PcdEncoding::Ascii;  ///< of the data
+  std::size_t record_size = 0;                ///< bytes per point in DATA binary
+  std::size_t columns = 0;                    ///< numbers per line in DATA ascii
+  std::size_t data_offset = 0;                ///< bytes before the data
+  std::size_t data_line = 0;                  ///< number of the first line of data; the first line of the file is 1
 
   /// Returns the field of this name, or nullptr if there is none. Padding is not found.
   const PcdField* find(const std::string& name) const;

@@ -36,13 +36,13 @@ enum class OccupancySamples {
 struct GAUSSMAP_API OnlineOptions {
   MapOptions map;                                              ///< cells of the map
   double max_range = std::numeric_limits<double>::infinity();  ///< points farther from the sensor are ignored [m]
-  LearningRate learning_rate = LearningRate::SampleMean;
+  LearningRate learning_rate = LearningRate::SampleMean;       ///< how far a point moves its cluster
   double slowest_rate = 5e-4;  ///< eps_min of eq. (5), LearningRate::Occupancy only, in (0, 1]
   double fastest_rate = 5e-2;  ///< eps_max of eq. (5), LearningRate::Occupancy only, in [slowest_rate, 1]
 
-  OccupancyOptions occupancy;    ///< log-odds per hit and per miss
-  VisibilityOptions visibility;  ///< when a beam passes through a cluster
-  OccupancySamples samples = OccupancySamples::Mean;
+  OccupancyOptions occupancy;                         ///< log-odds per hit and per miss
+  VisibilityOptions visibility;                       ///< when a beam passes through a cluster
+  OccupancySamples samples = OccupancySamples::Mean;  ///< which points of a cluster are tested
   /// Projection of every scan; std::nullopt: determined from the points, and again if a scan does not fit it.
   std::optional<Projection> projection;
   std::optional<double> no_return_is_free;  ///< pixels without return are free space up to this range [m]
@@ -64,7 +64,7 @@ struct GAUSSMAP_API OnlineOptions {
   /// 4, a drive of 20 scans ends at a third of its budget.
   std::size_t refine_cells = 0;
   double budget = 3.0;  ///< maximum Gaussians of a coarse scale after a refinement, as a multiple of its cells, >= 1
-  RefineMethod method = RefineMethod::Agglomerate;
+  RefineMethod method = RefineMethod::Agglomerate;        ///< how the clusters of a coarse cell are found
   ClusterSeed seed_rule = ClusterSeed::ParentCovariance;  ///< RefineMethod::Insert only
   int threads = 0;                                        ///< 0 = all cores
 
@@ -109,9 +109,12 @@ struct OnlineStatistics {
   std::size_t deleted = 0;        ///< deleted clusters of all scales, including parts of clusters
   std::size_t added = 0;          ///< clusters added by the refinement
   std::vector<double> errors;     ///< per scale: mean error, eq. (6), of the touched cells; empty without refinement
-  /// Durations of the steps [s].
-  double update_time = 0.0, image_time = 0.0, look_back_time = 0.0, occupancy_time = 0.0, forget_time = 0.0,
-         refine_time = 0.0;
+  double update_time = 0.0,       ///< duration of the update by points [s]
+      image_time = 0.0,           ///< duration of making the range image [s]
+      look_back_time = 0.0,       ///< duration of testing new cells against earlier range images [s]
+      occupancy_time = 0.0,       ///< duration of the occupancy update [s]
+      forget_time = 0.0,          ///< duration of the deletion [s]
+      refine_time = 0.0;          ///< duration of the refinement [s]
 };
 
 /// Builds a map scan by scan, Yguel 2009 sec. 3 to 5.
