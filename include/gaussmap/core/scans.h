@@ -63,7 +63,7 @@ inline bool isReturn(const Eigen::Vector3d& point) {
   return point.allFinite() && !point.isZero(0.0);
 }
 
-/// Counts the points of scans by what became of them. The other four counts add up to `read`.
+/// Counts the accepted and the dropped points of scans. The other four counts add up to `read`.
 struct GAUSSMAP_API PointCounts {
   std::int64_t read = 0;          ///< all points
   std::int64_t accepted = 0;      ///< points that were used

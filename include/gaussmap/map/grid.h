@@ -50,7 +50,7 @@ GAUSSMAP_API bool isInBox(const Box<D>& box, const Vector<D>& point);
 template <int D>
 class GAUSSMAP_API Grid {
  public:
-  /// Throws std::invalid_argument if an option is not usable; the message names the option.
+  /// Makes the grid of a map. Throws std::invalid_argument if an option is not usable; the message names the option.
   explicit Grid(const MapOptions& options = {});
 
   /// Returns the options, with the automatic noise filled in.

@@ -34,7 +34,7 @@ using ReportProgress = std::function<void(const AccumulateProgress&)>;
 /// The result of accumulateScans().
 struct AccumulatedScans {
   MomentGrid<3> moments;  ///< exact moments per cell, map frame
-  PointCounts counts;     ///< what became of the points
+  PointCounts counts;     ///< accepted and dropped points
 };
 
 /// Reads scans and sorts their points into cells. The memory grows with the map, not with the number of scans.
@@ -82,8 +82,8 @@ GAUSSMAP_API GaussianMap<D> build(const MapScale<D>& finest, const MapOptions& o
 
 /// Builds the map from scans, with one Gaussian per cell at every scale.
 ///
-/// The resolution of `options` replaces that of `reading`. If `counts` is given, it receives what became of the points.
-/// Throws like accumulateScans() and build() from moments.
+/// The resolution of `options` replaces that of `reading`. If `counts` is given, it receives the numbers of accepted
+/// and dropped points. Throws like accumulateScans() and build() from moments.
 GAUSSMAP_API GaussianMap<3> build(const Scans& scans, const MapOptions& options = {}, AccumulateOptions reading = {},
                                   PointCounts* counts = nullptr);
 

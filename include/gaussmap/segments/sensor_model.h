@@ -39,7 +39,8 @@ class GAUSSMAP_API ObservationModel {
 /// the same particles.
 class GAUSSMAP_API SampledObservations : public ObservationModel {
  public:
-  /// Throws std::invalid_argument if samples < 1, or if the noise is negative or not finite.
+  /// Makes a model with M = `samples`. Throws std::invalid_argument if samples < 1, or if the noise is negative or not
+  /// finite.
   explicit SampledObservations(const SensorNoise& noise = {}, int samples = 30, std::uint64_t seed = 1);
   void observe(const LaserScan& scan, std::size_t beam, std::uint64_t number,
                std::vector<ObservationPoint>& points) const override;
@@ -56,7 +57,7 @@ class GAUSSMAP_API SampledObservations : public ObservationModel {
 /// kappa = 0. There are ten points, or four if the pose is exact.
 class GAUSSMAP_API UnscentedObservations : public ObservationModel {
  public:
-  /// Throws std::invalid_argument if the noise is negative or not finite.
+  /// Makes a model of the given noise. Throws std::invalid_argument if the noise is negative or not finite.
   explicit UnscentedObservations(const SensorNoise& noise = {});
   void observe(const LaserScan& scan, std::size_t beam, std::uint64_t number,
                std::vector<ObservationPoint>& points) const override;

@@ -54,7 +54,7 @@ struct ViewpointInvariantOptions {
 /// change is always 0.5.
 class GAUSSMAP_API ViewpointInvariantUtility : public SegmentUtility {
  public:
-  /// Throws std::invalid_argument if an option is out of range; the message names the option.
+  /// Stores the options. Throws std::invalid_argument if an option is out of range; the message names the option.
   explicit ViewpointInvariantUtility(const ViewpointInvariantOptions& options = {});
   double split(const SegmentGoals& whole, const SegmentGoals& first, const SegmentGoals& second) const override;
   double merge(const SegmentGoals& first, const SegmentGoals& second, const SegmentGoals& whole) const override;
@@ -82,7 +82,7 @@ struct ViewpointDependentOptions {
 /// have split them.
 class GAUSSMAP_API ViewpointDependentUtility : public SegmentUtility {
  public:
-  /// Throws std::invalid_argument if an option is out of range; the message names the option.
+  /// Stores the options. Throws std::invalid_argument if an option is out of range; the message names the option.
   explicit ViewpointDependentUtility(const ViewpointDependentOptions& options = {});
   double split(const SegmentGoals& whole, const SegmentGoals& first, const SegmentGoals& second) const override;
   double merge(const SegmentGoals& first, const SegmentGoals& second, const SegmentGoals& whole) const override;
@@ -112,7 +112,7 @@ struct DescriptionLengthOptions {
 /// split only because it was observed for a long time.
 class GAUSSMAP_API DescriptionLengthUtility : public SegmentUtility {
  public:
-  /// Throws std::invalid_argument if an option is out of range; the message names the option.
+  /// Stores the options. Throws std::invalid_argument if an option is out of range; the message names the option.
   explicit DescriptionLengthUtility(const DescriptionLengthOptions& options = {});
   double split(const SegmentGoals& whole, const SegmentGoals& first, const SegmentGoals& second) const override;
   double merge(const SegmentGoals& first, const SegmentGoals& second, const SegmentGoals& whole) const override;
@@ -147,7 +147,8 @@ class GAUSSMAP_API CombinedUtility : public SegmentUtility {
     std::shared_ptr<SegmentUtility> utility;  ///< not empty
     double weight = 1.0;                      ///< finite
   };
-  /// Throws std::invalid_argument if there are no parts, a pointer is empty, or a weight is not finite.
+  /// Makes a utility of parts. Throws std::invalid_argument if there are no parts, a pointer is empty, or a weight is
+  /// not finite.
   explicit CombinedUtility(std::vector<Part> parts);
   double split(const SegmentGoals& whole, const SegmentGoals& first, const SegmentGoals& second) const override;
   double merge(const SegmentGoals& first, const SegmentGoals& second, const SegmentGoals& whole) const override;

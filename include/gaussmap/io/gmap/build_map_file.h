@@ -28,7 +28,7 @@ struct BuildMapFileOptions {
 
 /// The result of buildMapFile().
 struct BuiltMapFile {
-  PointCounts counts;  ///< what became of the points
+  PointCounts counts;  ///< accepted and dropped points
   /// Number of cells per scale, finest first.
   std::vector<std::size_t> cells, gaussians;  ///< number of Gaussians per scale, finest first
 };

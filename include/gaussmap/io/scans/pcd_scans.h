@@ -54,7 +54,7 @@ class GAUSSMAP_API PcdScans : public Scans {
 
 /// Returns the files of a list of inputs, in the order of the inputs.
 ///
-/// A file stands for itself. A directory is replaced by the *.pcd files in it, in natural order. The search is not
+/// A file is listed unchanged. A directory is replaced by the *.pcd files in it, in natural order. The search is not
 /// recursive, ignores case, and skips hidden files. Throws FileError if an input does not exist or a directory has no
 /// such file.
 GAUSSMAP_API std::vector<std::filesystem::path> listScans(const std::vector<std::filesystem::path>& inputs);

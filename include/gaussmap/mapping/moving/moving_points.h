@@ -93,7 +93,7 @@ class GAUSSMAP_API MovingPoints {
 
   /// Returns the scans.
   const Scans& scans() const;
-  /// Returns what became of the points while the map was built.
+  /// Returns the counts of accepted and dropped points.
   const PointCounts& counts() const;
   /// Returns the map of all scans, including the moving objects.
   const GaussianMap<3>& map() const;

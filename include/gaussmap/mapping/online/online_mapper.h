@@ -101,7 +101,7 @@ struct RemovedCluster {
 
 /// Reports the work of one call of OnlineMapper::add().
 struct OnlineStatistics {
-  PointCounts points;             ///< what became of the points of the scan
+  PointCounts points;             ///< accepted and dropped points of the scan
   std::size_t cells_touched = 0;  ///< finest cells with points of the scan
   std::size_t cells_new = 0;      ///< touched cells that were not occupied before
   std::size_t cells_tested = 0;   ///< cells of the coarser scales that the culling tested

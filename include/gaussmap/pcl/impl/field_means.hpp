@@ -25,6 +25,7 @@ class FieldMeans {
   FieldMeans(const pcl::PointCloud<PointT>& from, const std::vector<std::int32_t>& labels, pcl::PointCloud<PointT>& to)
       : from_(from), labels_(labels), to_(to) {}
 
+  /// Averages one field, unless it is x, y, z or label.
   template <typename Field>
   void operator()() const {
     using Type = typename pcl::traits::datatype<PointT, Field>::type;
