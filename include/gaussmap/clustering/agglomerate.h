@@ -25,8 +25,8 @@ enum class MergeCost {
 struct AgglomerateOptions {
   MergeCost cost = MergeCost::Volume;  ///< which pair is merged next
   std::size_t max_exact = 1000;        ///< with at most this number of input Gaussians, every pair is a candidate
-  /// With more than max_exact input Gaussians, a pair is a candidate only if one of the two clusters is among this
-  /// number of nearest neighbours of the other (by their means), >= 1.
+  /// Number of nearest neighbours of a cluster (by their means), >= 1. With more than max_exact input Gaussians, a pair
+  /// is a candidate only if one of its clusters is among these neighbours of the other.
   std::size_t neighbours = 8;
   std::size_t restricted_until = 500;  ///< with this number of clusters left, every pair is a candidate again, >= 1
 };

@@ -54,9 +54,11 @@ struct GAUSSMAP_API MapDiff {
 ///
 /// The function does not know where the sensors measured: a place that the second map did not observe is also Gone. At
 /// scales with several Gaussians per cell, the same surface can be clustered differently and is then reported as
-/// changed. For a simulated street with different noise and a level of 1 %, this affects 4 % of the clusters of scale 1
-/// and 0.002 % of those of the finest scale. Throws std::invalid_argument if the cells of the scale differ or an option
-/// is out of range; the message names the option.
+/// changed. Example: a simulated street with different noise, at a level of 1 %. This affects 4 % of the clusters of
+/// scale 1 and 0.002 % of those of the finest scale.
+///
+/// Throws std::invalid_argument if the cells of the scale differ or an option is out of range; the message names the
+/// option.
 template <int D>
 GAUSSMAP_API MapDiff diffMaps(const GaussianMap<D>& first, const GaussianMap<D>& second,
                               const DiffOptions& options = {});

@@ -26,9 +26,10 @@ struct SimplifyOptions {
 /// of Gaussians is found by bisection to within 0.5 %. A scale whose error is already larger is not changed and is
 /// listed in RefineResult::not_reached. The result has no error curves.
 ///
-/// Throws std::invalid_argument if the budget is out of range (the message names the option), if the map does not have
-/// a listed scale, or if a limit is below the number of cells of a scale. With MaxBytes, it also throws if one Gaussian
-/// per cell exceeds the limit; the message gives the bytes needed.
+/// Throws std::invalid_argument in these cases:
+/// - The budget is out of range; the message names the option.
+/// - The map does not have a listed scale, or a limit is below the number of cells of its scale.
+/// - MaxBytes: one Gaussian per cell exceeds the limit; the message gives the bytes needed.
 template <int D>
 GAUSSMAP_API RefineResult<D> simplify(GaussianMap<D> map, const Budget& budget, const SimplifyOptions& options = {});
 

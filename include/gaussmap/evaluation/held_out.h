@@ -13,8 +13,8 @@ namespace gaussmap {
 ///
 /// Every Gaussian is factorised once, and the adjacent cells are looked up once for all points of a cell. The value is
 /// minus infinity if a point's cell and all adjacent cells are empty. `threads`: 0 = all cores.
-/// Throws std::out_of_range if the map does not have the scale or a point is not finite or out of the grid's range, and
-/// std::domain_error if a covariance is not positive definite.
+/// Throws std::out_of_range if the map does not have the scale, or if a point is not finite or out of the grid's range.
+/// Throws std::domain_error if a covariance is not positive definite.
 template <int D>
 GAUSSMAP_API std::vector<double> logLikelihoods(const GaussianMap<D>& map, int scale,
                                                 const std::vector<Vector<D>>& points, int threads = 0);

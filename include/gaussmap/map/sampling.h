@@ -64,8 +64,8 @@ GAUSSMAP_API std::vector<std::size_t> sampleCounts(const GaussianMap<D>& map, in
 /// kinds of bounds are the cells. For n samples of a Gaussian there are at most 1000 + 200 n tries, because a Gaussian
 /// can have almost no mass inside its bounds. `unplaced` counts the samples that are then missing.
 ///
-/// The samples of a Gaussian depend only on the Gaussian, the seed, the key of its cell, its rank in the cell and their
-/// number, not on other cells of the map. Throws like sampleCounts().
+/// The samples of a Gaussian depend on the Gaussian, the seed, the key of its cell, its rank in the cell and their
+/// number. They do not depend on other cells of the map. Throws like sampleCounts().
 template <int D>
 GAUSSMAP_API MapSamples<D> sampleMap(const GaussianMap<D>& map, int scale, const SampleOptions& options = {});
 

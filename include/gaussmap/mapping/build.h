@@ -39,9 +39,10 @@ struct AccumulatedScans {
 
 /// Reads scans and sorts their points into cells. The memory grows with the map, not with the number of scans.
 ///
-/// `progress` is called after every scan, one call at a time. Throws FileError if a file is damaged, std::out_of_range
-/// if a point lies beyond the range of the cell indices (the message gives scan and point), and std::invalid_argument
-/// if an option is out of range (the message names the option).
+/// `progress` is called after every scan, one call at a time. Throws:
+/// - FileError if a file is damaged
+/// - std::out_of_range if a point lies beyond the range of the cell indices; the message gives the scan and the point
+/// - std::invalid_argument if an option is out of range; the message names the option
 GAUSSMAP_API AccumulatedScans accumulateScans(const Scans& scans, const AccumulateOptions& options,
                                               const ReportProgress& progress = {});
 

@@ -147,8 +147,10 @@ struct GAUSSMAP_API RefineOptions {
 /// curve of a scale is measured with the finer scale as refined. A scale that cannot reach MaxError gets one cluster
 /// per finer Gaussian and is listed in RefineResult::not_reached.
 ///
-/// Throws std::invalid_argument if a budget or an option is out of range (the message names it), if the map is
-/// compressed, and for MaxBytes if one Gaussian per cell exceeds the limit (the message gives the bytes needed).
+/// Throws std::invalid_argument in these cases:
+/// - A budget or an option is out of range; the message names it.
+/// - The map is compressed.
+/// - MaxBytes: one Gaussian per cell exceeds the limit; the message gives the bytes needed.
 template <int D>
 GAUSSMAP_API RefineResult<D> refine(GaussianMap<D> map, const Budget& budget = PerCell{},
                                     const RefineOptions& options = {});

@@ -38,8 +38,8 @@ struct GaussianMapFilterOptions {
 /// - With FilterOutput::Means, all other fields are averaged over these points: colours by channel, integers rounded,
 ///   normals by direction, non-finite values ignored. A label is that of the point nearest to the mean.
 /// - With FilterOutput::Samples, output points are unchanged input points.
-/// - If the point type has normals and an output point has none, its normal and curvature come from the surface of the
-///   input (see pointNormals()), seen from sensor_origin_.
+/// - An output point without a normal gets the normal and curvature of the input's surface (see pointNormals()), seen
+///   from sensor_origin_. This applies to point types with these fields.
 ///
 /// As with pcl::VoxelGrid, the output is not organised and has only finite points. setIndices() selects input points.
 /// getRemovedIndices(), if enabled in the constructor, returns the non-finite input points and those that are not

@@ -110,8 +110,9 @@ class GAUSSMAP_API SegmentFitter {
 
   /// Adds one scan to the map. Beams without a return are ignored, and the beams on both sides of them are not linked.
   ///
-  /// Throws std::invalid_argument if the pose is not finite, its covariance is not positive semidefinite, the numbers
-  /// of bearings and ranges differ, or the bearings are not finite and ascending. The scan is then not counted.
+  /// Throws std::invalid_argument if the pose is not finite or its covariance is not positive semidefinite. Also throws
+  /// it if the numbers of bearings and ranges differ, or the bearings are not finite and ascending. The scan is then
+  /// not counted.
   SegmentStatistics add(const LaserScan& scan);
 
   /// Returns a copy of the current map, optimised if SegmentFitterOptions::optimise is set.

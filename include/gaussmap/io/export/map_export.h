@@ -42,9 +42,11 @@ struct GaussianPlyOptions {
 /// value before the sigmoid: the log-odds of occupancy. scale is the natural logarithm of the standard deviations [m],
 /// rot is a unit quaternion (w x y z). The covariance is `R diag(exp(scale))^2 R'`.
 ///
-/// The write is atomic. Throws std::invalid_argument if sigma is not positive and finite, std::out_of_range if the map
-/// does not have the scale, std::length_error if the ellipsoids have more vertices than a mesh can have (2^31), and
-/// FileError if the file cannot be written.
+/// The write is atomic. Throws:
+/// - std::invalid_argument if sigma is not positive and finite
+/// - std::out_of_range if the map does not have the scale
+/// - std::length_error if the ellipsoids have more vertices than a mesh can have (2^31)
+/// - FileError if the file cannot be written
 GAUSSMAP_API std::size_t savePly(const std::filesystem::path& path, const GaussianMap<3>& map,
                                  const GaussianPlyOptions& options = {});
 

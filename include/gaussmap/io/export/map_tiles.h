@@ -40,7 +40,7 @@ GAUSSMAP_API WrittenTiles saveTiles(const std::filesystem::path& folder, const G
 
 /// Reads the map from a folder of tiles. The map has the scales that were written.
 ///
-/// If the folder holds only the finest scale with one Gaussian per cell, and the index gives the options, the coarser
+/// A folder can hold only the finest scale with one Gaussian per cell. If the index then gives the options, the coarser
 /// scales are rebuilt with one Gaussian per cell. Throws FileError if a file is not valid; the message gives the index
 /// or the tile.
 GAUSSMAP_API GaussianMap<3> loadTiles(const std::filesystem::path& folder);

@@ -16,9 +16,10 @@ namespace gaussmap {
 /// around its first corner. Everything else is skipped. No file can make the function crash, hang, or use more memory
 /// than a small multiple of the file's size.
 ///
-/// Throws FileError with the line or the byte if the file is not a PLY file or has no faces (a point cloud), if the
-/// header does not fit the size of the file, if the data are truncated, if a vertex is not finite, if an index is out
-/// of range, or if a face has less than three corners.
+/// Throws FileError, with the line or the byte, in these cases:
+/// - The file is not a PLY file, or it has no faces (a point cloud).
+/// - The header does not fit the size of the file, or the data are truncated.
+/// - A vertex is not finite, an index is out of range, or a face has less than three corners.
 GAUSSMAP_API TriangleMesh readPly(const std::filesystem::path& path);
 
 /// The type of the coordinates in a PLY file.

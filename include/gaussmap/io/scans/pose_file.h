@@ -34,9 +34,11 @@ struct PoseFile {
 
 /// Reads a pose file. The layout follows from the words of a line and must be the same in all lines.
 ///
-/// Throws FileError with the line if the number of words is wrong, a number is not finite, the norm of a quaternion
-/// differs from 1 by more than kQuaternionTolerance, a matrix differs from a rotation by as much, or a name occurs
-/// twice.
+/// Throws FileError, with the line, in these cases:
+/// - The number of words is wrong, or a number is not finite.
+/// - The norm of a quaternion differs from 1 by more than kQuaternionTolerance, or a matrix differs from a rotation by
+///   as much.
+/// - A name occurs twice.
 GAUSSMAP_API PoseFile readPoseFile(const std::filesystem::path& path);
 
 /// Returns the pose of each scan.

@@ -77,8 +77,8 @@ struct GAUSSMAP_API OnlineOptions {
   /// - Refinement: every 10 scans, the p = 4 cells of largest error of each scale get one cluster each, within the
   ///   budget. The Gaussian of largest distortion itself is the seed (sec. 5.1, 6, Algorithm 2).
   ///
-  /// The paper gives no values for the log-odds per hit and miss, the deletion threshold, the test whether a beam
-  /// passes through a point, and the size of the budget. These options keep their defaults. Two details differ from the
+  /// The paper does not give all values. These options keep their defaults: the log-odds per hit and miss, the deletion
+  /// threshold, the test whether a beam passes through a point, and the size of the budget. Two details differ from the
   /// paper: the error of eq. (6) has no factor (1 - eps), and a refinement can also choose cells that an earlier scan
   /// touched. Throws std::invalid_argument for any other value of `dimensions`.
   static OnlineOptions yguel2009(int dimensions);
