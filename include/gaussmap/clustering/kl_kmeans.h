@@ -38,8 +38,8 @@ struct KLClustering {
   bool converged = true;                ///< false: the run that gave this result stopped at max_iterations
 };
 
-/// Weighted k-means over Gaussians with the KL divergence as distance, Yguel 2009 sec. 5.2.1 after Davis & Dhillon
-/// 2006.
+/// Weighted k-means over Gaussians with the KL divergence as distance, Yguel 2009 sec. 5.2.1 (after Davis & Dhillon
+/// 2006).
 ///
 /// Each input Gaussian joins the nearest cluster centre under eq. (8); ties go to the smaller label. Each centre
 /// becomes the moment match of its members, eqs. (9), (10). The run ends when the labels stay the same or the

@@ -11,8 +11,8 @@
 
 namespace gaussmap {
 
-/// Standard deviations of a range-bearing sensor, Leal 2000 eq. (1). The errors are independent and normal, with mean
-/// 0.
+/// Standard deviations of a range-bearing sensor, Leal 2000 eq. (1). The errors are independent and normal, with zero
+/// mean.
 struct SensorNoise {
   double range = 0.02;    ///< [m], >= 0
   double bearing = 2e-3;  ///< [rad], >= 0
