@@ -11,6 +11,7 @@
 #include "common/command.h"
 #include "common/report.h"
 #include "gaussmap/core/error.h"
+#include "gaussmap/editing/transform_map.h"
 #include "gaussmap/io/pcd/map_pcd.h"
 
 namespace gaussmap::app {
@@ -45,15 +46,16 @@ void requireExact(const GaussianMap<3>& map, const std::string& path, bool is_mo
 }
 
 /// Loads the maps one after the other, moves each into the frame and cells of the first, and merges it.
-GaussianMap<3> merged(const MergeCommand& command, const std::vector<RigidMotion<3>>& motions, MapTask& task) {
+GaussianMap<3> merged(const MergeCommand& command, const Motions& motions, MapTask& task) {
   const std::vector<std::string>& paths = command.maps;
   GaussianMap<3> merged = task.load(paths.front());
-  if (command.exact) requireExact(merged, paths.front(), !motions.empty());
+  if (command.exact) requireExact(merged, paths.front(), !motions.poses.empty());
   for (std::size_t i = 1; i < paths.size(); ++i) {
     GaussianMap<3> next = loadAny(paths[i]);
     if (command.exact) requireExact(next, paths[i], false);
     TransformOptions to;
     to.grid = merged.options();
+    to.covariance = motions.covariance;
     to.threads = command.threads;
     if (next.options() == merged.options())
       to.grid.reset();
@@ -62,8 +64,8 @@ GaussianMap<3> merged(const MergeCommand& command, const std::vector<RigidMotion
                                     ": --resample sorts it into these cells");
     else if (command.exact)
       requireExact(next, paths[i], true);
-    if (to.grid || !motions.empty())
-      next = transformMap<3>(next, motions.empty() ? RigidMotion<3>() : motions[i - 1], to);
+    if (to.grid || !motions.poses.empty())
+      next = transformMap<3>(next, motions.poses.empty() ? Pose() : motions.poses[i - 1], to);
     MergeMapsOptions options;
     options.threads = command.threads;
     merged = mergeMaps<3>(merged, next, options);

@@ -199,7 +199,7 @@ TEST(MergeMaps, MergesMomentsWithGaussiansAsGaussians) {
   const MapOptions grid = smallGrid<3>();
   const std::vector<Vector<3>> points = randomCloud<3>(4000, 8);
   const GaussianMap<3> a = refinedMap<3>(points, grid);
-  RigidMotion<3> motion;
+  Pose motion;
   motion.translation = {0.03, 0.01, -0.02};
   const GaussianMap<3> b = transformMap<3>(refinedMap<3>(randomCloud<3>(4000, 9), grid), motion);
   const GaussianMap<3> merged = mergeMaps<3>(a, b), other_way = mergeMaps<3>(b, a);
@@ -235,8 +235,8 @@ TEST(MergeMaps, AddsLogOddsWithinTheirBounds) {
 }
 
 TEST(MergeMaps, CombinesLogOddsOfMapsThatHoldGaussiansToo) {
-  RigidMotion<2> motion;
-  motion.translation = {0.0, 0.01};
+  Pose motion;
+  motion.translation = {0.0, 0.01, 0.0};
   const GaussianMap<2> moved = transformMap<2>(oneCell(0.0, 1.0f), motion);
   const GaussianMap<2> merged = mergeMaps<2>(moved, oneCell(0.0, 2.5f));
   ASSERT_EQ(merged.gaussianCount(0), 1u);

@@ -91,7 +91,7 @@ TEST(Simplify, NeedsNoFinerScale) {
 }
 
 TEST(Simplify, MergesGaussiansThatShareAFinestCell) {
-  RigidMotion<3> motion;
+  Pose motion;
   motion.translation = {0.04, 0.03, 0.05};
   GaussianMap<3> map = transformMap<3>(build<3>(randomCloud<3>(9000, 5), smallGrid<3>()), motion);
   map = withOccupancy<3>(map, std::vector<float>(map.gaussianCount(0), 1.5f));

@@ -4,11 +4,12 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <string>
+
 #include "gaussmap/version.h"
 
 namespace gaussmap {
 
-/// Where a sensor stood: p_map = R p_sensor + t.
+/// A rigid motion: where a sensor stood, or how a map is moved. p_map = R p_sensor + t, or p_target = R p + t.
 struct GAUSSMAP_API Pose {
   /// Unaligned, for the reason given in gaussian.h.
   using Rotation = Eigen::Quaternion<double, Eigen::DontAlign>;
@@ -33,5 +34,12 @@ GAUSSMAP_API std::string poseFault(const Pose& pose);
 
 /// The same pose with a quaternion of unit length. The quaternion must not be zero.
 GAUSSMAP_API Pose normalised(const Pose& pose);
+
+/// Covariance of a pose, 6 x 6: of the translation x y z [m], then of a small rotation about x y z [rad]. All axes are
+/// those of the target (map) frame; the rotation is about the origin of what is moved (the sensor).
+using PoseCovariance = Eigen::Matrix<double, 6, 6, Eigen::DontAlign>;
+
+/// The covariance of pose.inverse(), if `covariance` is that of `pose`. The quaternion must have unit length.
+GAUSSMAP_API PoseCovariance covarianceOfInverse(const Pose& pose, const PoseCovariance& covariance);
 
 }  // namespace gaussmap

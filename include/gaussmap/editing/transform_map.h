@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
 
 #include "gaussmap/clustering/agglomerate.h"
@@ -11,49 +10,34 @@
 
 namespace gaussmap {
 
-/// Covariance of a pose in D dimensions, 6 x 6 or 3 x 3: of the translation [m], then of a small rotation [rad] about
-/// the target's axes (x y z, or the plane's normal) through the origin of what is moved.
-template <int D>
-using PoseCovariance = Eigen::Matrix<double, D*(D + 1) / 2, D*(D + 1) / 2, Eigen::DontAlign>;
-
-/// p_target = R p + t.
-template <int D>
-struct GAUSSMAP_API RigidMotion {
-  Matrix<D> rotation = Matrix<D>::Identity();   ///< R, orthogonal, determinant 1
-  Vector<D> translation = Vector<D>::Zero();    ///< t [m]
-  std::optional<PoseCovariance<D>> covariance;  ///< how well R and t are known; nothing: exactly
-
-  RigidMotion inverse() const;
-};
-
-/// The same as a pose of unit quaternion.
-GAUSSMAP_API RigidMotion<3> rigidMotion(const Pose& pose);
-
 struct TransformOptions {
-  std::optional<MapOptions> grid;            ///< of the result; nothing: that of the map
+  std::optional<MapOptions> grid;            ///< of the result; std::nullopt: that of the map
+  std::optional<PoseCovariance> covariance;  ///< how well the motion is known; std::nullopt: exactly
   MergeCost merge_cost = MergeCost::Volume;  ///< where clusters of a coarse cell have to become fewer
   int threads = 0;                           ///< 0 = all; never shows in the result
 };
 
-/// A map moved into another frame, and into another grid if one is given.
+/// Moves a map into another frame, and into another grid if one is given. `motion`: p_target = R p + t.
 ///
-/// Finest scale. Every Gaussian is moved and sorted into the cell of its mean, where it stays for itself: a cell may
-/// hold several then, and moving back gives every mean and every weight of the scale again. A covariance of the motion
-/// is added, as it acts at the mean. In cells of another side Gaussians that meet become one; one that comes from a
-/// larger cell is halved before, along its long axis, as long as it is longer than a cell there (uniform: sqrt(12)
-/// standard deviations) and its halves lie in different cells. All of this keeps weight, mean and covariance of what is
-/// there.
+/// Finest scale. Every Gaussian is moved and sorted into the cell that contains its new mean. Gaussians that share a
+/// cell are not merged, so that moving back restores all means and weights of the scale. The covariance of the motion
+/// is added to each covariance, as it acts at the mean. In a grid with cells of another side, all Gaussians of a cell
+/// are merged. One from a larger cell is first halved along its long axis, as long as it is longer than a cell (as a
+/// uniform rod: sqrt(12) standard deviations) and its halves lie in different cells. All of this keeps total weight,
+/// mean and covariance.
 ///
-/// Coarse scales of the same grid: clusters of scale 1 are cut at the borders of the new cells, then merged within them
-/// (agglomerate()) where it costs least, until there are as many as before, one a cell at least; coarser scales are
-/// made anew from what is below, as many as before. In another grid, as many a cell as before (refine()). All are
-/// exact moment matches.
+/// Coarse scales of the same grid: the clusters of scale 1 are cut at the borders of the new cells, then merged within
+/// them (agglomerate()) where it costs least, until there are as many as before, but at least one per cell. Coarser
+/// scales are rebuilt from the scale below, with as many clusters as before. In another grid, the number of clusters
+/// per cell stays as before (refine()). All are exact moment matches.
 ///
-/// The identity gives the same map. Otherwise no exact moments are left: the result takes no more scans.
-/// Throws std::invalid_argument for a rotation that is none, a covariance that is not finite, symmetric and positive
-/// semi-definite, options of no grid, and a compressed map; std::out_of_range for a mean too far for the cells.
+/// The identity returns the same map. Otherwise the result has no exact moments and accepts no more scans.
+/// For D = 2 the pose must be planar (z = 0, rotation about z), and only x, y and the rotation about z of the
+/// covariance count. Throws std::invalid_argument for a pose with a fault (poseFault()) or one that is not planar, a
+/// covariance that is not finite, symmetric and positive semi-definite, unusable grid options, and a compressed map;
+/// std::out_of_range for a mean outside the range of cell indices.
 template <int D>
-GAUSSMAP_API GaussianMap<D> transformMap(const GaussianMap<D>& map, const RigidMotion<D>& motion,
+GAUSSMAP_API GaussianMap<D> transformMap(const GaussianMap<D>& map, const Pose& motion,
                                          const TransformOptions& options = {});
 
 }  // namespace gaussmap

@@ -106,9 +106,8 @@ class GAUSSMAP_API GaussianMapRegistration : public pcl::Registration<PointSourc
   /// 0 = all; never shows in the result.
   void setNumberOfThreads(int threads) { options_.registration.threads = threads; }
 
-  /// Of (x, y, z [m], rotation vector about the origin of the source [rad]), axes of the target; zero if nothing is
-  /// known.
-  const Eigen::Matrix<double, 6, 6>& getPoseCovariance() const { return result_.covariance; }
+  /// Of the pose of the source in the frame of the target; zero if nothing is known.
+  const PoseCovariance& getPoseCovariance() const { return result_.covariance; }
   /// True if the source does not tell some direction of the pose, as in a corridor, or nothing.
   bool isDegenerate() const { return result_.degenerate; }
   /// All that is known of the last align().

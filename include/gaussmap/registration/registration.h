@@ -26,9 +26,8 @@ struct RegistrationOptions {
 
 struct GAUSSMAP_API RegistrationResult {
   Pose pose;  ///< scan frame to map frame
-  /// Of (x, y, z [m], rotation vector about the sensor [rad]), map axes; of the last iteration. Symmetric positive
-  /// definite, unless nothing of the map tells anything of the pose: then it is zero.
-  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  /// Of the pose, from the last iteration. Symmetric positive definite; zero if the map tells nothing about the pose.
+  PoseCovariance covariance = PoseCovariance::Zero();
   /// The direction that the scan tells least about, of unit length, rotation times range.
   Eigen::Matrix<double, 6, 1> weakest = Eigen::Matrix<double, 6, 1>::Zero();
   double fitness = 0.0;       ///< share of the scan's Gaussians within 3 standard deviations of one of the map
