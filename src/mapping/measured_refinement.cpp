@@ -141,12 +141,13 @@ RefineResult<3> refineToBytes(GaussianMap<3> map, const MaxBytes& budget, const 
                         return budget.size_of(trial);
                       }).multiple;
   if (!options.curves && last == fits && fits > 1.0) return trial;
-  double step = kBytePrecision;
-  for (double multiple = fits; multiple > 1.0;
-       multiple /= step, step *= step) {  // once, unless the curves are too much
+  double multiple = fits, step = kBytePrecision;
+  while (multiple > 1.0) {  // once, unless the curves take too many bytes
     RefineResult<3> best = refine<3>(std::move(trial.map), PerCell{multiple}, options);
     if (budget.size_of(best) <= budget.bytes) return best;
     trial.map = std::move(best.map);
+    multiple /= step;
+    step *= step;
   }
   RefineResult<3> one_per_cell = refine<3>(std::move(trial.map), PerCell{1.0}, options);
   requireRoom(budget.bytes, budget.size_of(one_per_cell));
