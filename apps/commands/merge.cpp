@@ -40,7 +40,7 @@ std::string gridOf(const GaussianMap<3>& map) {
 void requireExact(const GaussianMap<3>& map, const std::string& path, bool is_moved) {
   if (is_moved)
     throw UsageError("--exact: a map that is moved or resampled merges as Gaussians; leave one of the two out");
-  if (!map.canGrow())
+  if (!map.acceptsScans())
     throw FileError(path, std::string(map.isCompressed() ? "is compressed" : "holds Gaussians only") +
                               ": it has no exact moments to merge; leave out --exact to merge Gaussians");
 }
@@ -82,7 +82,7 @@ void run(const MergeCommand& command) {
   if (count < 2) throw UsageError("merge takes two maps at least");
   const GaussianMap<3> map = merged(command, motionsOf(command.motion, to_move), task);
 
-  Json step = {{"maps", count}, {"exact", map.canGrow()}};
+  Json step = {{"maps", count}, {"exact", map.acceptsScans()}};
   if (!command.motion.transforms.empty()) step["transforms"] = command.motion.transforms;
   if (!command.motion.file.empty()) step["transform_file"] = command.motion.file;
   if (!command.motion.covariance.empty()) step["pose_covariance"] = command.motion.covariance;
@@ -91,10 +91,10 @@ void run(const MergeCommand& command) {
   const double points = map.weight(map.scales() - 1);
   MapReport report;
   report.before = std::to_string(count) + " maps, " + std::to_string(std::llround(points)) + " points, " +
-                  (map.canGrow() ? "exact moments, " : "Gaussians only, ");
+                  (map.acceptsScans() ? "exact moments, " : "Gaussians only, ");
   report.counts = perScale(map);
   report.scales = scalesOf(map);
-  report.first = {{"maps", count}, {"points", points}, {"exact", map.canGrow()}};
+  report.first = {{"maps", count}, {"points", points}, {"exact", map.acceptsScans()}};
   report.tell_time = true;
   task.report(report);
 }

@@ -14,12 +14,12 @@
 
 #include "core/parallel.h"
 #include "core/pose_jacobian.h"
-#include "editing/regroup.h"
+#include "editing/recluster.h"
 #include "gaussmap/mapping/refine.h"
-#include "map/areas.h"
 #include "map/coarsen.h"
 #include "map/inherit_occupancy.h"
 #include "map/map_scale_builder.h"
+#include "map/occupied_areas.h"
 #include "mapping/scale_clusters.h"
 
 namespace gaussmap {
@@ -83,9 +83,9 @@ struct Motion {
   }
 };
 
-/// A Gaussian of the finest scale on its way.
+/// A Gaussian of the finest scale, moved.
 template <int D>
-struct Traveller {
+struct MovedGaussian {
   Gaussian<D> gaussian;  // map frame of the target
   CellKey<D> key;        // its cell there
   float log_odds = kMaxOccupancy;
@@ -95,15 +95,15 @@ struct Traveller {
 /// Halves a Gaussian along its long axis while that is longer than a cell and the halves lie in different cells.
 /// The parts have together its weight, mean and covariance: that of two halves of a uniform rod.
 template <int D>
-void split(const Traveller<D>& whole, const Grid<D>& grid, std::vector<Traveller<D>>& parts) {
+void split(const MovedGaussian<D>& whole, const Grid<D>& grid, std::vector<MovedGaussian<D>>& parts) {
   const PrincipalAxes<D> axes = principalAxes(whole.gaussian);
   const double variance = axes.variances(D - 1), side = grid.side(0);
   if (12.0 * variance > side * side) {
     const Vector<D> step = std::sqrt(0.75 * variance) * axes.directions.col(D - 1);
-    Traveller<D> low = whole;
+    MovedGaussian<D> low = whole;
     low.gaussian.weight *= 0.5;
     low.gaussian.cov -= step * step.transpose();
-    Traveller<D> high = low;
+    MovedGaussian<D> high = low;
     low.gaussian.mean -= step;
     high.gaussian.mean += step;
     low.key = grid.keyOf(low.gaussian.mean);
@@ -118,9 +118,9 @@ void split(const Traveller<D>& whole, const Grid<D>& grid, std::vector<Traveller
 }
 
 template <int D>
-class Mover {
+class MapTransformer {
  public:
-  Mover(const GaussianMap<D>& map, const Motion<D>& motion, const TransformOptions& options)
+  MapTransformer(const GaussianMap<D>& map, const Motion<D>& motion, const TransformOptions& options)
       : map_(map),
         motion_(motion),
         options_(options),
@@ -140,8 +140,8 @@ class Mover {
   }
 
  private:
-  std::vector<Traveller<D>> travellers() const {
-    std::vector<Traveller<D>> all(map_.gaussianCount(0));
+  std::vector<MovedGaussian<D>> movedGaussians() const {
+    std::vector<MovedGaussian<D>> all(map_.gaussianCount(0));
     parallelFor(map_.cellCount(0), options_.threads, 1024, [&](std::size_t cell) {
       const Vector<D> centre = map_.grid().centre(map_.scale(0).keys[cell], 0);
       const IndexRange range = map_.gaussiansOf(cell, 0);
@@ -154,16 +154,16 @@ class Mover {
       }
     });
     if (grid_.side(0) >= map_.grid().side(0)) return all;
-    std::vector<Traveller<D>> parts;
-    for (const Traveller<D>& one : all) split(one, grid_, parts);
+    std::vector<MovedGaussian<D>> parts;
+    for (const MovedGaussian<D>& one : all) split(one, grid_, parts);
     return parts;
   }
 
   MapScale<D> finestScale(std::vector<std::uint32_t>& group) const {
-    const std::vector<Traveller<D>> all = travellers();
+    const std::vector<MovedGaussian<D>> all = movedGaussians();
     std::vector<CellKey<D>> keys;
     keys.reserve(all.size());
-    for (const Traveller<D>& one : all) keys.push_back(one.key);
+    for (const MovedGaussian<D>& one : all) keys.push_back(one.key);
     std::vector<std::uint32_t> order = keyOrder<D>(keys, grid_.options().ratio, grid_.scales() - 1);
     MapScaleBuilder<D> finest;
     for (std::size_t first = 0, last = 0; first < order.size(); first = last) {
@@ -176,7 +176,7 @@ class Mover {
       std::vector<Gaussian<D>> here;
       float highest = -kMaxOccupancy;
       for (std::size_t i = first; i < last; ++i) {
-        const Traveller<D>& one = all[order[i]];
+        const MovedGaussian<D>& one = all[order[i]];
         highest = std::max(highest, one.log_odds);
         here.push_back(one.gaussian);
         here.back().mean -= centre;
@@ -200,8 +200,8 @@ class Mover {
                           std::vector<double>& areas) const {
     if (s > 1) std::iota(group.begin(), group.end(), 0u);
     const bool is_refined = map_.gaussianCount(s) > map_.cellCount(s);
-    const Regrouping<D> from{finer, grid_, s, group, areas, options_.threads};
-    Regrouped<D> made = regroup<D>(from, [&](const MapScale<D>& scale, const std::vector<double>& own_areas) {
+    const ReclusterInput<D> from{finer, grid_, s, group, areas, options_.threads};
+    ReclusterResult<D> made = recluster<D>(from, [&](const MapScale<D>& scale, const std::vector<double>& own_areas) {
       const std::size_t cells = scale.keys.size();
       if (!is_refined || map_.gaussianCount(s) <= cells) return onePerCell<D>(scale);
       return ScaleClusters::within(scale, grid_, s, own_areas, options_.merge_cost, options_.threads)
@@ -253,7 +253,7 @@ GaussianMap<D> transformMap(const GaussianMap<D>& map, const Pose& pose, const T
         "a compressed map has no detail that could be sorted into other cells: move the map that it was made from, "
         "then compress");
   if (map.empty()) return GaussianMap<D>(grid);
-  return Mover<D>(map, motion, options).run();
+  return MapTransformer<D>(map, motion, options).run();
 }
 
 template GaussianMap<2> transformMap<2>(const GaussianMap<2>&, const Pose&, const TransformOptions&);

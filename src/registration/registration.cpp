@@ -99,7 +99,7 @@ RegistrationResult align(const GaussianMap<3>& source, const GaussianMap<3>& map
     const bool final = &step == &steps.back();
     const auto& scan = !final && map.grid().side(scale) > side ? coarse : fine;
     ScanOnMap on_map(scan, *near, options.kernel, options.threads);
-    const Descent down =
+    const DescentResult down =
         descend([&](const Pose& where) { return on_map.linearise(where); }, pose, limitsOf(step, final, options));
     pose = down.pose;
     last = down.equations;

@@ -113,7 +113,8 @@ void expectGaussiansKeepTheirProperties() {
     }
     not_zero += !(klDivergence<D>(gaussian, gaussian) <= 1e-9);
     // A finished map's numbers.
-    const Gaussian<D> kept = restore<D>(quantise<D>(gaussian, 0.005), 0.005, std::numeric_limits<double>::infinity());
+    const Gaussian<D> kept =
+        dequantise<D>(quantise<D>(gaussian, 0.005), 0.005, std::numeric_limits<double>::infinity());
     indefinite += !isPositiveDefinite<D>(kept.cov);
     const Vector<D> direction = Vector<D>::Unit(static_cast<int>(random.below(D)));
     const double ratio = std::sqrt(direction.dot(kept.cov * direction) / direction.dot(gaussian.cov * direction));

@@ -25,7 +25,7 @@ TEST(Simplify, LeavesAsManyGaussiansAsAskedFor) {
   for (const double budget : {2.5, 1.7, 1.0}) {
     const GaussianMap<3> simple = simplify<3>(map, PerCell{budget}).map;
     EXPECT_TRUE(sameFinest<3>(simple, map));
-    EXPECT_TRUE(simple.canGrow());
+    EXPECT_TRUE(simple.acceptsScans());
     for (int s = 1; s < 3; ++s) {
       EXPECT_EQ(simple.gaussianCount(s), static_cast<std::size_t>(std::floor(budget * double(map.cellCount(s)))));
       EXPECT_EQ(simple.weight(s), map.weight(s));

@@ -95,7 +95,7 @@ TEST(TransformMap, MovesTheMatchOfEveryScaleAndKeepsItsWeight) {
     EXPECT_EQ(moved.gaussianCount(s), std::max(map.gaussianCount(s), moved.cellCount(s)));
   }
   EXPECT_EQ(moved.gaussianCount(0), map.gaussianCount(0));
-  EXPECT_FALSE(moved.canGrow());
+  EXPECT_FALSE(moved.acceptsScans());
   expectMomentMatches<3>(moved);
 }
 

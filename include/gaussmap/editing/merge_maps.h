@@ -14,8 +14,8 @@ struct MergeMapsOptions {
 
 /// One map of two in the same frame, Yguel 2009 sec. 5.4. An empty map changes nothing.
 ///
-/// Finest scale. Where both maps hold exact moments (canGrow()) these add, so that maps of parts of the points give
-/// the finest scale of the map of all of them to the last bit, in any order, and the coarse scales too as long as
+/// Finest scale. Where both maps hold exact moments (acceptsScans()) these add, so that maps of parts of the points
+/// give the finest scale of the map of all of them to the last bit, in any order, and the coarse scales too as long as
 /// they hold one Gaussian a cell. Else the result holds Gaussians: those of cells that only one map has, as they are,
 /// and in cells of both the moment matches of the closest, as many as the map with more of them has there.
 ///

@@ -63,9 +63,9 @@ class GAUSSMAP_API GaussianMap {
   bool empty() const { return scales_.back().keys.empty(); }
   /// True when some coarse cell has no cells under it: the finer scales do not cover the whole map.
   bool isCompressed() const { return compressed_; }
-  /// True when the finest scale holds the exact moments of all points: such a map can take more of them and merges
-  /// exactly.
-  bool canGrow() const { return empty() || (!isCompressed() && !scales_.front().moments.empty()); }
+  /// True if the finest scale holds the exact moments of all points: such a map accepts more scans and merges exactly.
+  /// All other maps are final.
+  bool acceptsScans() const { return empty() || (!isCompressed() && !scales_.front().moments.empty()); }
 
   std::size_t cellCount(int s) const { return scale(s).keys.size(); }
   std::size_t gaussianCount(int s) const { return scale(s).gaussianCount(); }

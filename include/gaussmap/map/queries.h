@@ -50,15 +50,15 @@ GAUSSMAP_API double logLikelihood(const GaussianMap<D>& map, const Vector<D>& po
 template <int D>
 GAUSSMAP_API double logLikelihood(const GaussianMap<D>& map, const Vector<D>& point);
 
-/// The Gaussian of a scale whose mean is nearest to a point (Euclidean, ties to the smaller index), however far;
-/// nullopt if the scale is empty. Throws std::out_of_range for a point that has no cell.
 template <int D>
-struct Nearest {
+struct NearestGaussian {
   std::size_t index;  ///< Gaussian of the scale asked for
   double distance;    ///< of its mean to the point [m]
 };
+/// The Gaussian of a scale whose mean is nearest to a point (Euclidean, ties to the smaller index), however far;
+/// nullopt if the scale is empty. Throws std::out_of_range for a point that has no cell.
 template <int D>
-GAUSSMAP_API std::optional<Nearest<D>> nearest(const GaussianMap<D>& map, const Vector<D>& point, int scale);
+GAUSSMAP_API std::optional<NearestGaussian<D>> nearest(const GaussianMap<D>& map, const Vector<D>& point, int scale);
 
 /// Unit normal of the surface at a point, from the finest cell around it whose points span a surface: at least
 /// D + 1 points, and spread of at least 4 noise floors along every axis but the normal. The sign is arbitrary.

@@ -13,11 +13,11 @@
 
 namespace gaussmap {
 
-inline constexpr std::size_t kLeastBuildMemory = std::size_t{1} << 20;
+inline constexpr std::size_t kMinBuildMemory = std::size_t{1} << 20;
 
 struct BuildMapFileOptions {
   std::size_t max_memory = std::size_t{1} << 30;  ///< about so much is used beside the scans that are read and what the
-                                                  ///< program takes anyhow, >= kLeastBuildMemory [bytes]
+                                                  ///< program takes anyhow, >= kMinBuildMemory [bytes]
   Budget budget = PerCell{};                      ///< or MaxGaussians
   RefineOptions refine;  ///< by agglomeration, without curves; its threads are those of the whole build
   SaveOptions save;

@@ -30,7 +30,7 @@ enum class Precision {
   Finished  ///< for use, not for growth: see finish()
 };
 
-/// The name of the metadata that say how far a finished map is from the one that it was made from.
+/// The name of the metadata that say how far a final map is from the one that it was made from.
 inline constexpr const char* kFinalEntry = "final";
 
 struct SaveOptions {
@@ -41,7 +41,7 @@ struct SaveOptions {
 };
 
 /// Writes the map whole or not at all: beside the target, then renamed over it. The same map gives the same bytes.
-/// A finished file says so in its metadata, by the name kFinalEntry.
+/// The file of a final map says so in its metadata, by the name kFinalEntry.
 /// Throws FileError if the file exists and may not be replaced, or cannot be written; std::domain_error as finish().
 template <int D>
 GAUSSMAP_API void save(const std::filesystem::path& path, const GaussianMap<D>& map, const MapMetadata& metadata = {},
@@ -63,7 +63,7 @@ GAUSSMAP_API std::uintmax_t savedSize(const GaussianMap<D>& map, const MapMetada
 template <int D>
 GAUSSMAP_API GaussianMap<D> finish(const GaussianMap<D>& map, int finest_scale = 0);
 
-/// What save() wrote, equal to it in every bit; a finished map is that of finish(). Throws FileError, saying what is
+/// What save() wrote, equal to it in every bit; a final map is that of finish(). Throws FileError, saying what is
 /// wrong, if the file is no map, of a newer version, of another dimension, truncated or altered.
 template <int D = 3>
 GAUSSMAP_API GaussianMap<D> load(const std::filesystem::path& path);

@@ -40,8 +40,8 @@ struct MapUpdate {
 /// The file is copied beside itself, changed there, and renamed: whoever reads, and whatever interrupts, there is the
 /// old map or the new one. It takes the place of both on the disk for that time. One writer at a time.
 /// `edit` may change the metadata given to save(). Throws FileError if the file cannot be read or written, or takes
-/// no more points (GaussianMap::canGrow()), std::invalid_argument if the cells of the grid are not those of the map or
-/// the budget is below 1.
+/// no more points (GaussianMap::acceptsScans()), std::invalid_argument if the cells of the grid are not those of the
+/// map or the budget is below 1.
 template <int D>
 GAUSSMAP_API MapUpdate updateMap(const std::filesystem::path& path, const MomentGrid<D>& added,
                                  const UpdateOptions& options = {}, const std::function<void(MapMetadata&)>& edit = {});
