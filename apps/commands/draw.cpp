@@ -15,7 +15,7 @@
 namespace gaussmap::app {
 namespace {
 
-constexpr std::size_t kMostEllipses = 200000;  // 30 MB of text, more than viewers like
+constexpr std::size_t kMaxEllipses = 200000;  // 30 MB of text, more than viewers like
 
 const Help kDrawHelp = {
     "Draw maps from above: the ellipses of one scale, coloured by height",
@@ -83,9 +83,9 @@ void run(const DrawCommand& options) {
     count += panel.ellipses.size();
   }
   if (count == 0) throw std::runtime_error(options.maps.front() + ": no Gaussian lies in the picture");
-  if (count > kMostEllipses)
+  if (count > kMaxEllipses)
     throw UsageError(std::to_string(count) + " Gaussians would lie in the picture, more than " +
-                     std::to_string(kMostEllipses) + ": take a coarser --scale, or a part of the map (--box)");
+                     std::to_string(kMaxEllipses) + ": take a coarser --scale, or a part of the map (--box)");
   const Box<2> window = given ? *given : windowAround(panels);
   drawMaps(std::move(panels), window, options.output.path);
   std::cout << options.output.path << ": " << count << " Gaussians, "

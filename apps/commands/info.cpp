@@ -57,7 +57,7 @@ std::string stateOf(const GaussianMap<3>& map, const MapMetadata& metadata) {
   if (final_error != metadata.end()) return "final (takes no more scans): " + final_error->second;
   if (map.isCompressed()) return "compressed: detail only where it is needed (takes no more scans)";
   const std::string occupancy = map.hasOccupancy() ? ", with occupancy" : "";
-  return (map.canGrow() ? "exact moments at the finest scale (takes more scans)" : "Gaussians only (final)") +
+  return (map.acceptsScans() ? "exact moments at the finest scale (takes more scans)" : "Gaussians only (final)") +
          occupancy;
 }
 
@@ -135,8 +135,8 @@ Json jsonOf(const MapInfo& info, const std::string& path) {
                {"resolution", map.options().resolution},
                {"ratio", map.options().ratio},
                {"noise", map.options().noise},
-               {"finest", map.canGrow() || !map.scale(0).moments.empty() ? "moments" : "gaussians"},
-               {"takes_scans", map.canGrow()},
+               {"finest", map.acceptsScans() || !map.scale(0).moments.empty() ? "moments" : "gaussians"},
+               {"takes_scans", map.acceptsScans()},
                {"final", info.metadata.count(kFinalEntry) > 0},
                {"compressed", map.isCompressed()},
                {"occupancy", map.hasOccupancy()},

@@ -11,6 +11,7 @@
 #include "common/command.h"
 #include "common/report.h"
 #include "gaussmap/core/error.h"
+#include "gaussmap/editing/transform_map.h"
 #include "gaussmap/io/pcd/map_pcd.h"
 
 namespace gaussmap::app {
@@ -39,21 +40,22 @@ std::string gridOf(const GaussianMap<3>& map) {
 void requireExact(const GaussianMap<3>& map, const std::string& path, bool is_moved) {
   if (is_moved)
     throw UsageError("--exact: a map that is moved or resampled merges as Gaussians; leave one of the two out");
-  if (!map.canGrow())
+  if (!map.acceptsScans())
     throw FileError(path, std::string(map.isCompressed() ? "is compressed" : "holds Gaussians only") +
                               ": it has no exact moments to merge; leave out --exact to merge Gaussians");
 }
 
 /// Loads the maps one after the other, moves each into the frame and cells of the first, and merges it.
-GaussianMap<3> merged(const MergeCommand& command, const std::vector<RigidMotion<3>>& motions, MapTask& task) {
+GaussianMap<3> merged(const MergeCommand& command, const Motions& motions, MapTask& task) {
   const std::vector<std::string>& paths = command.maps;
   GaussianMap<3> merged = task.load(paths.front());
-  if (command.exact) requireExact(merged, paths.front(), !motions.empty());
+  if (command.exact) requireExact(merged, paths.front(), !motions.poses.empty());
   for (std::size_t i = 1; i < paths.size(); ++i) {
     GaussianMap<3> next = loadAny(paths[i]);
     if (command.exact) requireExact(next, paths[i], false);
     TransformOptions to;
     to.grid = merged.options();
+    to.covariance = motions.covariance;
     to.threads = command.threads;
     if (next.options() == merged.options())
       to.grid.reset();
@@ -62,8 +64,8 @@ GaussianMap<3> merged(const MergeCommand& command, const std::vector<RigidMotion
                                     ": --resample sorts it into these cells");
     else if (command.exact)
       requireExact(next, paths[i], true);
-    if (to.grid || !motions.empty())
-      next = transformMap<3>(next, motions.empty() ? RigidMotion<3>() : motions[i - 1], to);
+    if (to.grid || !motions.poses.empty())
+      next = transformMap<3>(next, motions.poses.empty() ? Pose() : motions.poses[i - 1], to);
     MergeMapsOptions options;
     options.threads = command.threads;
     merged = mergeMaps<3>(merged, next, options);
@@ -80,7 +82,7 @@ void run(const MergeCommand& command) {
   if (count < 2) throw UsageError("merge takes two maps at least");
   const GaussianMap<3> map = merged(command, motionsOf(command.motion, to_move), task);
 
-  Json step = {{"maps", count}, {"exact", map.canGrow()}};
+  Json step = {{"maps", count}, {"exact", map.acceptsScans()}};
   if (!command.motion.transforms.empty()) step["transforms"] = command.motion.transforms;
   if (!command.motion.file.empty()) step["transform_file"] = command.motion.file;
   if (!command.motion.covariance.empty()) step["pose_covariance"] = command.motion.covariance;
@@ -89,10 +91,10 @@ void run(const MergeCommand& command) {
   const double points = map.weight(map.scales() - 1);
   MapReport report;
   report.before = std::to_string(count) + " maps, " + std::to_string(std::llround(points)) + " points, " +
-                  (map.canGrow() ? "exact moments, " : "Gaussians only, ");
+                  (map.acceptsScans() ? "exact moments, " : "Gaussians only, ");
   report.counts = perScale(map);
   report.scales = scalesOf(map);
-  report.first = {{"maps", count}, {"points", points}, {"exact", map.canGrow()}};
+  report.first = {{"maps", count}, {"points", points}, {"exact", map.acceptsScans()}};
   report.tell_time = true;
   task.report(report);
 }

@@ -2,7 +2,6 @@
 #include "commands/motion.h"
 
 #include <charconv>
-#include <optional>
 #include <sstream>
 
 #include "common/command.h"
@@ -37,9 +36,9 @@ Pose poseIn(const std::string& text) {
   return normalised(pose);
 }
 
-PoseCovariance<3> covarianceIn(const std::string& text) {
+PoseCovariance covarianceIn(const std::string& text) {
   const std::vector<double> n = numbersIn("--pose-covariance", text);
-  PoseCovariance<3> covariance = PoseCovariance<3>::Zero();
+  PoseCovariance covariance = PoseCovariance::Zero();
   if (n.size() == 6)
     for (Eigen::Index i = 0; i < 6; ++i) covariance(i, i) = n[static_cast<std::size_t>(i)];
   else if (n.size() == 36)
@@ -69,8 +68,9 @@ void addMotionOptions(Command& command, MotionInput& input) {
       .rare();
 }
 
-std::vector<RigidMotion<3>> motionsOf(const MotionInput& input, const std::vector<std::filesystem::path>& maps) {
-  std::vector<Pose> poses;
+Motions motionsOf(const MotionInput& input, const std::vector<std::filesystem::path>& maps) {
+  Motions motions;
+  std::vector<Pose>& poses = motions.poses;
   if (!input.file.empty()) {
     poses = posesForScans(readPoseFile(input.file), maps);
   } else {
@@ -81,11 +81,7 @@ std::vector<RigidMotion<3>> motionsOf(const MotionInput& input, const std::vecto
   }
   if (poses.empty() && !input.covariance.empty())
     throw UsageError("--pose-covariance: belongs to --transform or --transform-file");
-  std::vector<RigidMotion<3>> motions;
-  for (const Pose& pose : poses) {
-    motions.push_back(rigidMotion(pose));
-    if (!input.covariance.empty()) motions.back().covariance = covarianceIn(input.covariance);
-  }
+  if (!input.covariance.empty()) motions.covariance = covarianceIn(input.covariance);
   return motions;
 }
 

@@ -2,11 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/command.h"
-#include "gaussmap/editing/transform_map.h"
+#include "gaussmap/core/pose.h"
 
 namespace gaussmap::app {
 
@@ -18,7 +19,12 @@ struct MotionInput {
 };
 void addMotionOptions(Command& command, MotionInput& input);
 
-/// The motion of each map, in their order; empty if no motion is given. Throws UsageError, FileError.
-std::vector<RigidMotion<3>> motionsOf(const MotionInput& input, const std::vector<std::filesystem::path>& maps);
+struct Motions {
+  std::vector<Pose> poses;                   // of each map, in their order; empty if no motion is given
+  std::optional<PoseCovariance> covariance;  // of every pose
+};
+
+/// Throws UsageError, FileError.
+Motions motionsOf(const MotionInput& input, const std::vector<std::filesystem::path>& maps);
 
 }  // namespace gaussmap::app

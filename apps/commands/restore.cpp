@@ -7,7 +7,7 @@
 #include "commands/map_task.h"
 #include "common/command.h"
 #include "common/report.h"
-#include "editing/restore.h"
+#include "editing/restore_clusters.h"
 #include "gaussmap/core/error.h"
 #include "io/pcd/removed_pcd.h"
 
@@ -39,7 +39,7 @@ void run(const RestoreCommand& command) {
   const auto isInside = region(command.box);
   MapTask task(command, {command.map, command.removed});
   const GaussianMap<3> old = task.load();
-  if (!old.canGrow())
+  if (!old.acceptsScans())
     throw FileError(command.map, std::string(old.isCompressed() ? "is compressed" : "holds Gaussians only") +
                                      ": nothing can be brought back into it exactly");
   const std::vector<RemovedCluster<3>> removed = readRemoved(command.removed);

@@ -6,6 +6,8 @@
 #include "commands/map_task.h"
 #include "commands/motion.h"
 #include "common/command.h"
+#include "gaussmap/core/pose.h"
+#include "gaussmap/editing/transform_map.h"
 
 namespace gaussmap::app {
 namespace {
@@ -26,15 +28,17 @@ void run(const TransformCommand& command) {
   std::vector<std::filesystem::path> inputs = {command.map};
   if (!command.motion.file.empty()) inputs.emplace_back(command.motion.file);
   MapTask task(command, inputs);
-  const std::vector<RigidMotion<3>> motions = motionsOf(command.motion, {command.map});
-  if (motions.empty()) throw UsageError("transform needs --transform or --transform-file");
-  const RigidMotion<3>& given = motions.front();
+  const Motions motions = motionsOf(command.motion, {command.map});
+  if (motions.poses.empty()) throw UsageError("transform needs --transform or --transform-file");
+  const Pose& given = motions.poses.front();
   TransformOptions options;
   options.threads = command.threads;
+  options.covariance = motions.covariance;
+  if (command.inverse && options.covariance) options.covariance = covarianceOfInverse(given, *options.covariance);
   const GaussianMap<3> map = transformMap<3>(task.load(), command.inverse ? given.inverse() : given, options);
 
   Json step = {{"inverse", command.inverse}};
-  const Eigen::Quaterniond q(Eigen::Matrix3d(given.rotation));
+  const Eigen::Quaterniond q(given.rotation.toRotationMatrix());
   const Eigen::Vector3d& t = given.translation;
   step["transform"] = {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
   if (!command.motion.covariance.empty()) step["pose_covariance"] = command.motion.covariance;

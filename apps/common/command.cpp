@@ -151,16 +151,18 @@ Option Command::number(const std::string& name, T& value, double low, double hig
   return Option(withDefault<T>(option));
 }
 
-#define GAUSSMAP_NUMBER(T)                                                     \
-  template Option Command::number(const std::string&, T&, const std::string&); \
-  template Option Command::number(const std::string&, T&, double, double, const std::string&);
-GAUSSMAP_NUMBER(int)
-GAUSSMAP_NUMBER(std::size_t)
-GAUSSMAP_NUMBER(double)
-GAUSSMAP_NUMBER(std::optional<int>)
-GAUSSMAP_NUMBER(std::optional<std::size_t>)
-GAUSSMAP_NUMBER(std::optional<double>)
-#undef GAUSSMAP_NUMBER
+template Option Command::number(const std::string&, int&, const std::string&);
+template Option Command::number(const std::string&, std::size_t&, const std::string&);
+template Option Command::number(const std::string&, double&, const std::string&);
+template Option Command::number(const std::string&, std::optional<int>&, const std::string&);
+template Option Command::number(const std::string&, std::optional<std::size_t>&, const std::string&);
+template Option Command::number(const std::string&, std::optional<double>&, const std::string&);
+template Option Command::number(const std::string&, int&, double, double, const std::string&);
+template Option Command::number(const std::string&, std::size_t&, double, double, const std::string&);
+template Option Command::number(const std::string&, double&, double, double, const std::string&);
+template Option Command::number(const std::string&, std::optional<int>&, double, double, const std::string&);
+template Option Command::number(const std::string&, std::optional<std::size_t>&, double, double, const std::string&);
+template Option Command::number(const std::string&, std::optional<double>&, double, double, const std::string&);
 
 Option Command::numbers(const std::string& name, std::vector<double>& values, int least, int most, double low,
                         double high, const std::string& help) {

@@ -15,7 +15,7 @@ namespace {
 constexpr double kRowWidth = 1200, kColumnHeight = 1500, kPanelHeight = 900;  // at most
 constexpr double kMargin = 12, kTitle = 16, kLegend = 44, kFont = 11;
 constexpr double kCharacter = 6.2;  // on average no text is wider
-constexpr double kColourBar = 220, kLeastWidth = 540;
+constexpr double kColourBar = 220, kMinWidth = 540;
 constexpr double kThin = 2.0;  // poles and fronts are filled, so that they are seen
 
 /// Viridis (van der Walt & Smith 2015) in nine steps: equal differences look equal. Reversed: on white paper the
@@ -73,7 +73,7 @@ Layout layOut(const std::vector<Panel>& panels, const Box<2>& window) {
   const double height = layout.view.height(), column_width = std::max(layout.view.width(), title);
   layout.step_x = stacked ? 0.0 : column_width + kMargin;
   layout.step_y = stacked ? kTitle + height + kMargin : 0.0;
-  layout.all_width = std::max((count - 1) * layout.step_x + column_width, kLeastWidth) + 2 * kMargin;
+  layout.all_width = std::max((count - 1) * layout.step_x + column_width, kMinWidth) + 2 * kMargin;
   layout.all_height = (count - 1) * layout.step_y + kTitle + height + 2 * kMargin + kLegend;
   return layout;
 }
@@ -165,7 +165,7 @@ void drawMaps(std::vector<Panel> panels, const Box<2>& window, const std::filesy
     y += layout.step_y;
   }
   const double legend = layout.all_height - kLegend + 4;
-  layout.view.drawScaleBar(svg, kMargin, legend, std::max(layout.view.width(), kLeastWidth) / 5);
+  layout.view.drawScaleBar(svg, kMargin, legend, std::max(layout.view.width(), kMinWidth) / 5);
   drawColourBar(svg, heights, layout.all_width - kMargin, legend);
   svg.save(path);
 }

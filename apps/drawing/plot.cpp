@@ -48,12 +48,12 @@ void drawAxes(Svg& svg, const Axis& x, const Axis& y) {
 }  // namespace
 
 void plotCurves(const std::vector<ErrorCurve>& curves, const std::filesystem::path& path) {
-  constexpr double kLeastError = 1e-9;  // [m]; zero has no logarithm
+  constexpr double kMinError = 1e-9;  // [m]; zero has no logarithm
   Axis x, y;
   for (const ErrorCurve& curve : curves)
     for (const ErrorPoint& point : curve.points) {
       x.add(static_cast<double>(point.gaussians));
-      for (const double error : {point.q95, point.mean}) y.add(std::max(error, kLeastError));
+      for (const double error : {point.q95, point.mean}) y.add(std::max(error, kMinError));
     }
   x.close();
   y.close();
@@ -72,7 +72,7 @@ void plotCurves(const std::vector<ErrorCurve>& curves, const std::filesystem::pa
           << "' points='";
       for (const ErrorPoint& point : curve.points)
         svg << x.at(static_cast<double>(point.gaussians)) << ','
-            << y.at(std::max(is_mean ? point.mean : point.q95, kLeastError)) << ' ';
+            << y.at(std::max(is_mean ? point.mean : point.q95, kMinError)) << ' ';
       svg << "'/>\n";
       svg.text(x.to + 12, legend, "scale " + std::to_string(curve.scale) + (is_mean ? ", mean (dashed)" : ", 95 %"),
                std::string("fill='") + colour + "'");

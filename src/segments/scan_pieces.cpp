@@ -8,7 +8,7 @@
 namespace gaussmap::detail {
 namespace {
 
-constexpr std::size_t kFewest = 3;      // beams that tell a direction ...
+constexpr std::size_t kMinBeams = 3;    // beams that tell a direction ...
 constexpr double kShortestPiece = 1.3;  // ... over so many tolerances
 
 }  // namespace
@@ -42,7 +42,7 @@ std::vector<Vector<2>> straightPieces(const std::vector<BeamRun>& runs, const st
   while (!open.empty()) {
     const BeamRun run = open.back();
     open.pop_back();
-    if (run.last - run.first < kFewest) continue;
+    if (run.last - run.first < kMinBeams) continue;
     const Vector<2> chord = hits[run.last - 1] - hits[run.first];
     const double length = chord.norm();
     // The beam farthest from the chord, or from its first end where the chord has no direction.

@@ -8,8 +8,8 @@ namespace gaussmap::detail {
 
 namespace {
 
-constexpr double kMany = 2.0;         // rays through for one that ends on it
-constexpr double kFewestRays = 10.0;  // through what is pruned
+constexpr double kMany = 2.0;      // rays through for one that ends on it
+constexpr double kMinRays = 10.0;  // through what is pruned
 
 }  // namespace
 
@@ -66,7 +66,7 @@ std::size_t SegmentStore::prune() {
     if (!segments_[id].alive) continue;
     double crossed = 0.0;
     for (const SegmentCell& cell : segments_[id].evidence.row.cells()) crossed += cell.crossed;
-    if (crossed < kFewestRays || crossed < kMany * segments_[id].spread.beams()) continue;
+    if (crossed < kMinRays || crossed < kMany * segments_[id].spread.beams()) continue;
     remove(id);
     ++pruned;
   }

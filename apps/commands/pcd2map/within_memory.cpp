@@ -14,8 +14,8 @@ void checkMemory(const Pcd2mapOptions& options) {
     throw UsageError(
         "--max-memory: goes tile by tile, with --budget alone; --online, --method insert, --max-gaussians, --max-bytes "
         "and --max-error look at the whole map (gaussmap refine does so afterwards)");
-  if (amountOf("--max-memory", options.max_memory, true) < kLeastBuildMemory)
-    throw UsageError("--max-memory " + options.max_memory + ": at least " + std::to_string(kLeastBuildMemory) +
+  if (amountOf("--max-memory", options.max_memory, true) < kMinBuildMemory)
+    throw UsageError("--max-memory " + options.max_memory + ": at least " + std::to_string(kMinBuildMemory) +
                      " bytes are needed");
 }
 

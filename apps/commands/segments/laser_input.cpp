@@ -12,13 +12,13 @@
 namespace gaussmap::app {
 namespace {
 
-constexpr std::size_t kMostWarnings = 5;  // about one log
+constexpr std::size_t kMaxWarnings = 5;  // about one log
 
 LaserScans readLogs(const std::vector<std::string>& paths) {
   LaserScans all;
   for (const std::string& path : paths) {
     const CarmenLog log = readCarmenLog(path);
-    const std::size_t shown = std::min(log.faults.size(), kMostWarnings);
+    const std::size_t shown = std::min(log.faults.size(), kMaxWarnings);
     for (std::size_t i = 0; i < shown; ++i)
       warn(path + ": line " + std::to_string(log.faults[i].line) + " is left out: " + log.faults[i].what);
     const std::size_t more = log.faults.size() - shown + log.more_faults;

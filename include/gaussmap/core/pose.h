@@ -4,11 +4,12 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <string>
+
 #include "gaussmap/version.h"
 
 namespace gaussmap {
 
-/// A rigid motion: the pose of a sensor, p_map = R p_sensor + t.
+/// A rigid motion: the pose of a sensor, p_map = R p_sensor + t, or the motion of a map, p_target = R p + t.
 struct GAUSSMAP_API Pose {
   /// Type of the quaternion. It is stored unaligned, for the reason given at kStorage in gaussian.h.
   using Rotation = Eigen::Quaternion<double, Eigen::DontAlign>;
@@ -37,5 +38,15 @@ GAUSSMAP_API std::string poseFault(const Pose& pose);
 
 /// Returns the pose with its quaternion scaled to unit length. The quaternion must not be zero.
 GAUSSMAP_API Pose normalised(const Pose& pose);
+
+/// The covariance of a pose, 6 x 6: of the translation x y z [m], then of a small rotation about x y z [rad].
+///
+/// The axes are those of the target (map) frame. The rotation is about the origin of the moved (sensor) frame.
+using PoseCovariance = Eigen::Matrix<double, 6, 6, Eigen::DontAlign>;
+/// A direction in the space of poses, 6 x 1: translation, then rotation, as in PoseCovariance.
+using PoseDirection = Eigen::Matrix<double, 6, 1, Eigen::DontAlign>;
+
+/// Returns the covariance of pose.inverse(), given the covariance of `pose`. The quaternion must have unit length.
+GAUSSMAP_API PoseCovariance covarianceOfInverse(const Pose& pose, const PoseCovariance& covariance);
 
 }  // namespace gaussmap

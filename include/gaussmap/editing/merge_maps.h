@@ -15,11 +15,11 @@ struct MergeMapsOptions {
 
 /// Merges two maps of the same frame into one, Yguel 2009 sec. 5.4. Merging with an empty map changes nothing.
 ///
-/// Finest scale: If both maps hold exact moments (GaussianMap::canGrow()), the moments are added. The result is then
-/// bit-identical to the finest scale of a map of all points, for any order of merging. If the coarse scales hold one
-/// Gaussian per cell, they are identical as well. If the maps do not hold exact moments, the result holds Gaussians.
-/// Cells of only one map are copied. In cells of both maps, the most similar Gaussians are replaced by their moment
-/// match. The number of Gaussians left in a cell is the larger of the two numbers before.
+/// Finest scale: If both maps hold exact moments (GaussianMap::acceptsScans()), the moments are added. The result is
+/// then bit-identical to the finest scale of a map of all points, for any order of merging. If the coarse scales hold
+/// one Gaussian per cell, they are identical as well. If the maps do not hold exact moments, the result holds
+/// Gaussians. Cells of only one map are copied. In cells of both maps, the most similar Gaussians are replaced by their
+/// moment match. The number of Gaussians left in a cell is the larger of the two numbers before.
 ///
 /// Coarse scales: Cells of only one map keep their clusters. In cells of both maps, agglomerate() merges the cheapest
 /// pairs. At scale 1 it starts from the clusters of both maps, at coarser scales from the finer Gaussians below the

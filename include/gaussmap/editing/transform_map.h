@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
 
 #include "gaussmap/clustering/agglomerate.h"
@@ -11,35 +10,15 @@
 
 namespace gaussmap {
 
-/// The covariance of a pose in D dimensions, 6 x 6 or 3 x 3: of the translation [m], then of a small rotation [rad].
-///
-/// The rotation is about the axes of the target (x y z, or the normal of the plane), through the origin of the moved
-/// frame.
-template <int D>
-using PoseCovariance = Eigen::Matrix<double, D*(D + 1) / 2, D*(D + 1) / 2, Eigen::DontAlign>;
-
-/// A rigid motion in D dimensions, p_target = R p + t, with an optional covariance.
-template <int D>
-struct GAUSSMAP_API RigidMotion {
-  Matrix<D> rotation = Matrix<D>::Identity();   ///< R, orthogonal, determinant 1
-  Vector<D> translation = Vector<D>::Zero();    ///< t [m]
-  std::optional<PoseCovariance<D>> covariance;  ///< of R and t; std::nullopt: the motion is exact
-
-  /// Returns the inverse motion, with its covariance.
-  RigidMotion inverse() const;
-};
-
-/// Converts a pose with a unit quaternion to a rigid motion.
-GAUSSMAP_API RigidMotion<3> rigidMotion(const Pose& pose);
-
 /// Options of transformMap().
 struct TransformOptions {
   std::optional<MapOptions> grid;            ///< grid of the result; std::nullopt: the grid of the map
+  std::optional<PoseCovariance> covariance;  ///< of the motion; std::nullopt: the motion is exact
   MergeCost merge_cost = MergeCost::Volume;  ///< which pair of clusters of a coarse cell is merged next
   int threads = 0;                           ///< 0 = all cores
 };
 
-/// Transforms a map into another frame, and resamples it if a grid is given.
+/// Transforms a map into another frame, and resamples it if a grid is given. `motion`: p_target = R p + t.
 ///
 /// Finest scale: Every Gaussian is transformed and sorted into the cell that contains its new mean. Gaussians that
 /// share a cell are not merged, so the inverse motion restores all means and weights. The covariance of the motion is
@@ -57,16 +36,18 @@ struct TransformOptions {
 /// Coarse scales in another grid: refine() rebuilds them with the same number of clusters per cell as before. In both
 /// cases all clusters are exact moment matches.
 ///
-/// The identity returns the same map. Any other result has no exact moments and accepts no more scans.
+/// The identity returns the same map. Any other result has no exact moments and accepts no more scans. For D = 2, only
+/// x, y and the rotation about z of the covariance are used.
 ///
 /// Throws std::invalid_argument in these cases:
-/// - The rotation is not orthogonal with determinant 1, or the motion is not finite.
+/// - The pose has a fault (see poseFault()).
+/// - D = 2 and the pose is not planar (z = 0, rotation about z).
 /// - The covariance is not finite, symmetric and positive semi-definite.
 /// - The options of the grid are not usable, or the map is compressed.
 ///
 /// Throws std::out_of_range if a mean lies beyond the range of the cell indices.
 template <int D>
-GAUSSMAP_API GaussianMap<D> transformMap(const GaussianMap<D>& map, const RigidMotion<D>& motion,
+GAUSSMAP_API GaussianMap<D> transformMap(const GaussianMap<D>& map, const Pose& motion,
                                          const TransformOptions& options = {});
 
 }  // namespace gaussmap

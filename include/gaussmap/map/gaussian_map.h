@@ -79,7 +79,7 @@ class GAUSSMAP_API GaussianMap {
   bool isCompressed() const { return compressed_; }
   /// Returns true if the map can take more points: it is empty, or its finest scale holds the exact moments of all
   /// points. Such maps also merge exactly.
-  bool canGrow() const { return empty() || (!isCompressed() && !scales_.front().moments.empty()); }
+  bool acceptsScans() const { return empty() || (!isCompressed() && !scales_.front().moments.empty()); }
 
   /// Returns the number of cells of scale `s`.
   std::size_t cellCount(int s) const { return scale(s).keys.size(); }

@@ -63,7 +63,7 @@ GAUSSMAP_API double logLikelihood(const GaussianMap<D>& map, const Vector<D>& po
 
 /// The result of nearest(): a Gaussian and its distance.
 template <int D>
-struct Nearest {
+struct NearestGaussian {
   std::size_t index;  ///< Gaussian of the given scale
   double distance;    ///< distance of the Gaussian's mean from the point [m]
 };
@@ -74,7 +74,7 @@ struct Nearest {
 /// The distance is Euclidean; ties go to the smaller index. Throws std::out_of_range if the point is not finite or out
 /// of the grid's range.
 template <int D>
-GAUSSMAP_API std::optional<Nearest<D>> nearest(const GaussianMap<D>& map, const Vector<D>& point, int scale);
+GAUSSMAP_API std::optional<NearestGaussian<D>> nearest(const GaussianMap<D>& map, const Vector<D>& point, int scale);
 
 /// Returns the unit normal of the surface at a point, or std::nullopt if no scale has a suitable Gaussian there.
 ///

@@ -2,9 +2,6 @@
 // header only
 #pragma once
 
-#ifndef PCL_NO_PRECOMPILE
-#define PCL_NO_PRECOMPILE
-#endif
 #include <pcl/memory.h>
 #include <pcl/pcl_macros.h>
 #include <pcl/point_types.h>
@@ -19,7 +16,8 @@ namespace gaussmap {
 #pragma GCC diagnostic ignored "-Wpedantic"
 
 /// One Gaussian of a map as a PCL point. x y z is the mean, so any PCL tool can show and filter the cloud. The fields
-/// are those of the PCD files of savePcd().
+/// are those of the PCD files of savePcd(). PCL's templates are not compiled for this type: define PCL_NO_PRECOMPILE
+/// before the first PCL header if you use them with it, such as pcl::PassThrough.
 struct EIGEN_ALIGN16 PointGaussian {
   PCL_ADD_POINT4D;      ///< mean [m]
   float covariance[6];  ///< xx xy xz yy yz zz [m^2]

@@ -117,7 +117,7 @@ class GAUSSMAP_API GaussianMapRegistration : public pcl::Registration<PointSourc
 
   /// Returns the covariance of (x, y, z [m], rotation vector about the origin of the source [rad]), along the axes of
   /// the target. It is zero if there is no information about the pose.
-  const Eigen::Matrix<double, 6, 6>& getPoseCovariance() const { return result_.covariance; }
+  const PoseCovariance& getPoseCovariance() const { return result_.covariance; }
   /// Returns true if some direction of the pose is unobservable, for example along a corridor, or if there is no
   /// result.
   bool isDegenerate() const { return result_.degenerate; }

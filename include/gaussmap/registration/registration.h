@@ -30,15 +30,15 @@ struct GAUSSMAP_API RegistrationResult {
   Pose pose;  ///< scan frame to map frame
   /// Covariance of (x, y, z [m], rotation vector about the sensor [rad]) along the map's axes, from the last iteration.
   /// It is symmetric positive definite, or zero if the map gives no information about the pose.
-  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  PoseCovariance covariance = PoseCovariance::Zero();
   /// The direction with the smallest information: a unit vector of (x, y, z, rotation vector times the RMS range of the
   /// scan). Zero if the map gives no information about the pose.
-  Eigen::Matrix<double, 6, 1> weakest = Eigen::Matrix<double, 6, 1>::Zero();
+  PoseDirection least_observable = PoseDirection::Zero();
   double fitness = 0.0;       ///< share of the scan's Gaussians within 3 standard deviations of a map Gaussian
   double mean_squared = 0.0;  ///< mean squared Mahalanobis distance of these Gaussians
   int iterations = 0;         ///< of all steps
   bool converged = false;     ///< the last step ended before max_iterations
-  bool degenerate = true;     ///< some direction is unobservable (along a corridor, on a plain), see `weakest`
+  bool degenerate = true;     ///< some direction is unobservable (along a corridor, on a plain), see `least_observable`
 };
 
 /// Registers a scan to a map: refines the guess of its pose, from the coarsest scale to the finest.

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;  // write() takes no more than 2 GB
+constexpr std::size_t kMaxAtOnce = std::size_t{1} << 30;  // write() takes no more than 2 GB
 
 fs::path resolved(const fs::path& target) {
   std::error_code error;
@@ -76,7 +76,7 @@ void AtomicFile::write(const void* data, std::size_t bytes) {
   if (file_ < 0) throw FileError(target_, "is finished and takes no more bytes");
   const char* next = static_cast<const char*>(data);
   while (bytes > 0) {
-    const ssize_t written = ::write(file_, next, std::min(bytes, kMostAtOnce));
+    const ssize_t written = ::write(file_, next, std::min(bytes, kMaxAtOnce));
     if (written < 0) {
       if (errno == EINTR) continue;
       fail("cannot be written", errno);

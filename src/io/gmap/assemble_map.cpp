@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "map/link_cells.h"
+#include "map/child_links.h"
 #include "map/map_scale_builder.h"
 
 namespace gaussmap::detail {
@@ -47,7 +47,7 @@ OrderedScale<D> inKeyOrder(const Tile<D>& tile, const MapOptions& options, int s
 template <int D>
 void link(MapScale<D>& finer, const std::vector<std::uint32_t>& labels, MapScale<D>& coarse, const Grid<D>& grid,
           int s) {
-  coarse.first_child = linkCells<D>(finer.keys, coarse.keys, grid, s);
+  coarse.first_child = childLinks<D>(finer.keys, coarse.keys, grid, s);
   const auto startOf = [](const std::vector<std::uint32_t>& first_gaussian, std::size_t cell) {
     return first_gaussian.empty() ? cell : std::size_t{first_gaussian[cell]};
   };

@@ -17,11 +17,11 @@
 #include "core/check.h"
 #include "core/parallel.h"
 #include "io/files/atomic_file.h"
-#include "io/gmap/gain_threshold.h"
+#include "io/gmap/largest_gains.h"
 #include "io/gmap/map_schema.h"
 #include "io/gmap/spilled_cells.h"
-#include "map/areas.h"
 #include "map/coarsen.h"
+#include "map/occupied_areas.h"
 #include "mapping/budget.h"
 #include "mapping/scale_clusters.h"
 
@@ -48,7 +48,7 @@ struct SpilledCuts {
   SpillFile::Span gains;
 };
 
-/// A finished tile, on the disk.
+/// A complete tile, on the disk.
 struct SpilledTile {
   TileRow<3> row;  // without its bytes
   SpillFile::Span bytes;
@@ -277,8 +277,8 @@ BuiltMapFile buildMapFile(const Scans& scans, const AccumulateOptions& reading, 
                           const std::function<MapMetadata(const PointCounts&)>& metadataOf,
                           const BuildMapFileOptions& options,
                           const std::function<void(const AccumulateProgress&)>& progress) {
-  require(options.max_memory >= kLeastBuildMemory, "max_memory", static_cast<double>(options.max_memory),
-          "must be at least " + std::to_string(kLeastBuildMemory) + " bytes");
+  require(options.max_memory >= kMinBuildMemory, "max_memory", static_cast<double>(options.max_memory),
+          "must be at least " + std::to_string(kMinBuildMemory) + " bytes");
   if (options.refine.method != RefineMethod::Agglomerate)
     throw std::invalid_argument("method: only agglomeration goes tile by tile");
   if (options.save.precision != Precision::Exact) throw std::invalid_argument("precision: build first, then finish");

@@ -51,9 +51,8 @@ template <int D>
 KeyRange<D> finestCells(const Box<D>& box, double side) {
   KeyRange<D> range;
   const auto keyOf = [side](double coordinate) {
-    constexpr double kLeast = std::numeric_limits<std::int32_t>::min(),
-                     kMost = std::numeric_limits<std::int32_t>::max();
-    return static_cast<std::int32_t>(std::clamp(std::floor(coordinate / side), kLeast, kMost));
+    constexpr double kMin = std::numeric_limits<std::int32_t>::min(), kMax = std::numeric_limits<std::int32_t>::max();
+    return static_cast<std::int32_t>(std::clamp(std::floor(coordinate / side), kMin, kMax));
   };
   for (int axis = 0; axis < D; ++axis) {
     if (!(box.low(axis) <= box.high(axis)))

@@ -12,7 +12,7 @@
 namespace gaussmap::detail {
 namespace {
 
-constexpr std::int32_t kLeastSpan = 32;
+constexpr std::int32_t kMinSpan = 32;
 
 /// Shortest text that reads back as the same double, in any locale.
 std::string exactText(double value) {
@@ -53,7 +53,7 @@ Database openOnce(const std::filesystem::path& path, Database::Mode mode) {
 
 std::int32_t tileSpan(const MapOptions& options) {
   std::int64_t span = options.ratio;
-  while (span < kLeastSpan) span *= options.ratio;
+  while (span < kMinSpan) span *= options.ratio;
   return static_cast<std::int32_t>(span);
 }
 

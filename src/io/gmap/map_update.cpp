@@ -17,7 +17,7 @@
 #include "gaussmap/io/gmap/map_file.h"
 #include "io/files/atomic_file.h"
 #include "io/gmap/assemble_map.h"
-#include "io/gmap/cut_tiles.h"
+#include "io/gmap/make_tiles.h"
 #include "io/gmap/map_schema.h"
 #include "mapping/update_part.h"
 
@@ -40,7 +40,7 @@ struct Header {
     options = readOptions<D>(path, entries);
     if (entries.count("grows") + entries.count("occupancy") == 0) {  // of the first programs: only the tiles tell
       const GaussianMap<D> map = load<D>(path);
-      entries["grows"] = map.canGrow() ? "1" : "0";
+      entries["grows"] = map.acceptsScans() ? "1" : "0";
       entries["occupancy"] = map.hasOccupancy() ? "1" : "0";
     }
     if (numberIn<int>(path, entries, "grows") != 1)
@@ -129,7 +129,7 @@ class Updater {
         updatePart<D>(before, added_, header_.occupancy, refining, [&](int s, std::size_t cells) {
           const auto at = static_cast<std::size_t>(s);
           const std::size_t others = header_.gaussians[at] - before.gaussianCount(s);
-          const std::size_t most = mostGaussians(at, header_.cells[at] - before.cellCount(s) + cells);
+          const std::size_t most = maxGaussians(at, header_.cells[at] - before.cellCount(s) + cells);
           return most - std::min(most, others);
         });
     database_.execute("BEGIN");
@@ -150,7 +150,7 @@ class Updater {
 
  private:
   /// How many Gaussians a coarse scale of the whole map may have when it has so many cells.
-  std::size_t mostGaussians(std::size_t s, std::size_t cells) const {
+  std::size_t maxGaussians(std::size_t s, std::size_t cells) const {
     constexpr double kRounding = 1e-9;
     const double per_cell = options_.budget ? *options_.budget
                                             : static_cast<double>(header_.gaussians[s]) /
@@ -164,11 +164,11 @@ class Updater {
     const std::int64_t span = grid_.cellsAlongSide(grid_.scales() - 1) / grid_.cellsAlongSide(s);
     CellKey<D> low, high;
     for (std::size_t axis = 0; axis < D; ++axis) {
-      constexpr std::int64_t kLeast = std::numeric_limits<std::int32_t>::min(),
-                             kMost = std::numeric_limits<std::int32_t>::max();
+      constexpr std::int64_t kMin = std::numeric_limits<std::int32_t>::min(),
+                             kMax = std::numeric_limits<std::int32_t>::max();
       const std::int64_t first = std::int64_t{root[axis]} * span;
-      low[axis] = static_cast<std::int32_t>(std::clamp(first, kLeast, kMost));
-      high[axis] = static_cast<std::int32_t>(std::clamp(first + span - 1, kLeast, kMost));
+      low[axis] = static_cast<std::int32_t>(std::clamp(first, kMin, kMax));
+      high[axis] = static_cast<std::int32_t>(std::clamp(first + span - 1, kMin, kMax));
     }
     low = tileOf<D>(low, span_);
     high = tileOf<D>(high, span_);
@@ -201,7 +201,7 @@ class Updater {
     }
     try {
       GaussianMap<D> map = assembleMap<D>(header_.options, std::move(part));
-      bool fits = map.canGrow() && (map.empty() || map.hasOccupancy() == header_.occupancy);
+      bool fits = map.acceptsScans() && (map.empty() || map.hasOccupancy() == header_.occupancy);
       for (int s = 0; s < grid_.scales(); ++s)
         fits &= map.cellCount(s) <= header_.cells[std::size_t(s)] &&
                 map.gaussianCount(s) <= header_.gaussians[std::size_t(s)];
@@ -215,7 +215,7 @@ class Updater {
   /// Writes the tiles of a scale that are others now; returns how many.
   std::size_t writeTiles(const GaussianMap<D>& after, int s) {
     const OldTiles<D>& old = old_[static_cast<std::size_t>(s)];
-    const auto cut = tilesOf<D>(after.scale(s), span_);
+    const auto cut = cellsByTile<D>(after.scale(s), span_);
     std::vector<const std::pair<const CellKey<D>, std::vector<IndexRange>>*> all;
     all.reserve(cut.size());
     for (const auto& entry : cut) all.push_back(&entry);
@@ -225,7 +225,7 @@ class Updater {
       std::vector<TileRow<D>> rows(std::min(kTilesEncoded, all.size() - begin));
       parallelFor(rows.size(), options_.threads, 1, [&](std::size_t i) {
         const auto& [address, runs] = *all[begin + i];
-        Tile<D> tile = cutTile<D>(after, s, runs);
+        Tile<D> tile = makeTile<D>(after, s, runs);
         const auto before = old.find(address);
         if (before != old.end()) {
           if (!before->second.outside.keys.empty()) {

@@ -68,14 +68,14 @@ void Database::distrust() {
     sqlite3_db_config(handle(), danger, 0, nullptr);
   // Pages that point to each other in a ring, or a view in the place of a table, would else be read for ever. A row
   // takes some 20 steps and at least 20 bytes.
-  most_steps_ = 1000 + static_cast<std::int64_t>(bytes / 100);
-  steps_left_ = std::make_unique<std::int64_t>(most_steps_);
+  max_steps_ = 1000 + static_cast<std::int64_t>(bytes / 100);
+  steps_left_ = std::make_unique<std::int64_t>(max_steps_);
   sqlite3_progress_handler(
       handle(), 1000, [](void* left) { return --*static_cast<std::int64_t*>(left) < 0 ? 1 : 0; }, steps_left_.get());
 }
 
 void Database::renewSteps() const {
-  if (steps_left_) *steps_left_ = most_steps_;
+  if (steps_left_) *steps_left_ = max_steps_;
 }
 
 void Database::execute(const std::string& sql) {

@@ -45,7 +45,7 @@ class Database {
   std::filesystem::path path_;
   Mode mode_;
   std::unique_ptr<std::int64_t> steps_left_;  // in thousands
-  std::int64_t most_steps_ = 0;
+  std::int64_t max_steps_ = 0;
   std::unique_ptr<sqlite3, Close> handle_;
 };
 

@@ -32,14 +32,14 @@ struct TileAddress {
 };
 
 /// Columns, bytes of equal weight together, zstd with checksum; a skippable frame behind it where the data shrink more
-/// than 64 times (finished: 16 times). Little endian whatever the machine. Throws std::domain_error if a finished tile
-/// is asked for and a Gaussian is none (io/quantise.h).
+/// than 64 times (final map: 16 times). Little endian whatever the machine. Throws std::domain_error if a tile of a
+/// final map is asked for and a Gaussian is none (io/quantise.h).
 template <int D>
 std::string encodeTile(const Tile<D>& tile, const TileAddress<D>& address, const MapOptions& options, int level,
                        Precision precision = Precision::Exact);
 
 /// Throws std::runtime_error, saying what is wrong, unless the bytes are exactly what encodeTile makes of a tile at
-/// this address with these options. Allocates no more than 64 times the bytes given, twice; for a finished tile 256
+/// this address with these options. Allocates no more than 64 times the bytes given, twice; for one of a final map 256
 /// times.
 template <int D>
 Tile<D> decodeTile(std::string_view bytes, const TileAddress<D>& address, const MapOptions& options);

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kDegree = kPi / 180.0;
 constexpr double kFarthest = 1e9;  // of a pose [m]
-constexpr std::size_t kMostFaults = 1000;
+constexpr std::size_t kMaxFaults = 1000;
 constexpr double kSickNoReturn = 80.0, kSickLimit = 82.0;  // a SICK writes 81.83 and the like for no return [m]
 
 /// What is wrong with a line.
@@ -128,7 +128,7 @@ LaserScan readRobotLaser(Words& words) {
 }
 
 void note(CarmenLog& log, std::size_t line, const std::string& what) {
-  if (log.faults.size() < kMostFaults) {
+  if (log.faults.size() < kMaxFaults) {
     log.faults.push_back({line, what});
   } else {
     ++log.more_faults;

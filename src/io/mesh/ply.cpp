@@ -35,10 +35,10 @@ class AsciiValues {
   /// Could so many elements be in the rest? Each value has a digit, and all but the very last one something behind it.
   bool mayHold(const PlyElement& element) const {
     std::size_t bytes = 0;
-    return !__builtin_mul_overflow(element.count, 2 * element.leastWords(), &bytes) &&
+    return !__builtin_mul_overflow(element.count, 2 * element.minWords(), &bytes) &&
            bytes <= static_cast<std::size_t>(end_ - place_) + 1;
   }
-  std::size_t mostOf(PlyType) const { return static_cast<std::size_t>(end_ - place_) / 2 + 1; }
+  std::size_t maxCount(PlyType) const { return static_cast<std::size_t>(end_ - place_) / 2 + 1; }
 
   void beginElement(const PlyElement& element, std::size_t i) {
     while (place_ != end_ && (isBlank(*place_) || *place_ == '\n')) line_ += *place_++ == '\n';
@@ -104,9 +104,9 @@ class BinaryValues {
 
   bool mayHold(const PlyElement& element) const {
     std::size_t bytes = 0;
-    return !__builtin_mul_overflow(element.count, element.leastSize(), &bytes) && bytes <= bytes_.size() - place_;
+    return !__builtin_mul_overflow(element.count, element.minSize(), &bytes) && bytes <= bytes_.size() - place_;
   }
-  std::size_t mostOf(PlyType type) const { return (bytes_.size() - place_) / sizeOf(type); }
+  std::size_t maxCount(PlyType type) const { return (bytes_.size() - place_) / sizeOf(type); }
 
   void beginElement(const PlyElement&, std::size_t) { element_ = place_; }
   void endElement(const PlyElement&) {}
@@ -138,7 +138,7 @@ class BinaryValues {
     fail("a whole number was expected");
   }
   void skip(PlyType type, std::size_t count) {
-    if (count > mostOf(type)) fail("the file is cut off inside this element");
+    if (count > maxCount(type)) fail("the file is cut off inside this element");
     place_ += count * sizeOf(type);
   }
 
@@ -229,7 +229,7 @@ class BodyParser {
   std::size_t length(const PlyProperty& list) {
     const std::int64_t length = values_.whole(list.count_type);
     if (length < 0) values_.fail("a list of " + std::to_string(length) + " entries");
-    if (static_cast<std::uint64_t>(length) > values_.mostOf(list.type))
+    if (static_cast<std::uint64_t>(length) > values_.maxCount(list.type))
       values_.fail("a list of " + std::to_string(length) + " entries does not fit into the rest of the file");
     return static_cast<std::size_t>(length);
   }

@@ -135,7 +135,7 @@ std::size_t sizeOf(PlyType type) {
   return kSizes[static_cast<std::size_t>(type)];
 }
 
-std::size_t PlyElement::leastSize() const {
+std::size_t PlyElement::minSize() const {
   std::size_t size = 0;
   for (const PlyProperty& property : properties) size += sizeOf(property.is_list ? property.count_type : property.type);
   return size;

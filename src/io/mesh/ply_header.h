@@ -31,8 +31,8 @@ struct PlyElement {
   std::vector<PlyProperty> properties;
 
   /// Bytes, or words of a text, that the shortest such element has.
-  std::size_t leastSize() const;
-  std::size_t leastWords() const { return properties.size(); }
+  std::size_t minSize() const;
+  std::size_t minWords() const { return properties.size(); }
 };
 
 enum class PlyEncoding { Ascii, LittleEndian, BigEndian };

@@ -11,7 +11,7 @@
 
 #include "core/number_text.h"
 #include "gaussmap/io/pcd/map_pcd.h"
-#include "map/link_cells.h"
+#include "map/child_links.h"
 #include "map/map_origin.h"
 #include "map/map_scale_builder.h"
 
@@ -167,7 +167,7 @@ GaussianMap<3> fromRecords(const GaussianRecords& all) {
     scale = builder.take();
     if (s == 0) continue;
     MapScale<3>& finer = scales[static_cast<std::size_t>(s) - 1];
-    scale.first_child = linkCells<3>(finer.keys, scale.keys, grid, s);
+    scale.first_child = childLinks<3>(finer.keys, scale.keys, grid, s);
     for (std::size_t cell = 0; cell < scale.keys.size(); ++cell) {
       const IndexRange clusters = gaussiansOf(scale, cell);
       for (std::size_t child = scale.first_child[cell]; child < scale.first_child[cell + 1]; ++child) {

@@ -12,7 +12,7 @@ namespace {
 // DATA binary_compressed starts with two 32-bit numbers: the bytes behind them, and what they expand to.
 constexpr std::size_t kSizesBytes = 8;
 // The best that LZF can do: a back reference of 3 bytes stands for 264.
-constexpr std::size_t kMostExpansion = 264 / 3;
+constexpr std::size_t kMaxExpansion = 264 / 3;
 
 struct CompressedSizes {
   std::uint32_t compressed = 0;
@@ -77,7 +77,7 @@ void checkCompressed(const std::filesystem::path& path, const PcdHeader& header,
     fail(path, header.data_offset + 4,
          "the data expand to " + std::to_string(sizes.expanded) + " bytes, but the header claims " +
              claim(header.points, header.record_size, "bytes"));
-  if (sizes.expanded > kMostExpansion * sizes.compressed)
+  if (sizes.expanded > kMaxExpansion * sizes.compressed)
     fail(path, header.data_offset + 4,
          std::to_string(sizes.compressed) + " compressed bytes cannot expand to " + std::to_string(sizes.expanded) +
              ": the file is damaged");

@@ -91,13 +91,13 @@ RemovedCluster<3> fromRecord(const Record& record) {
 
 /// Could points of a cell have such sums? Offsets have at most 15 bits and a sign, see CellMoments.
 bool isPossible(const CellMoments<3>& moments) {
-  constexpr std::int64_t kMostOffset = kStepsPerCell / 2;
+  constexpr std::int64_t kMaxOffset = kStepsPerCell / 2;
   if (moments.count < 0 || moments.count >= std::int64_t{1} << 33) return false;
   const auto isWithin = [](std::int64_t value, std::int64_t most) { return value >= -most && value <= most; };
   for (const std::int64_t sum : moments.sum)
-    if (!isWithin(sum, moments.count * kMostOffset)) return false;
+    if (!isWithin(sum, moments.count * kMaxOffset)) return false;
   for (const std::int64_t product : moments.product)
-    if (!isWithin(product, moments.count * (kMostOffset * kMostOffset))) return false;
+    if (!isWithin(product, moments.count * (kMaxOffset * kMaxOffset))) return false;
   return moments.product[0] >= 0 && moments.product[3] >= 0 && moments.product[5] >= 0;
 }
 

@@ -17,7 +17,7 @@ using namespace detail;
 namespace {
 
 // Beyond, files are opened again when they are read: each open one takes a memory map and a few kilobytes.
-constexpr std::size_t kMostOpen = 1024;
+constexpr std::size_t kMaxOpen = 1024;
 
 std::vector<std::filesystem::path> scansIn(const std::filesystem::path& directory) {
   std::vector<std::filesystem::path> scans;
@@ -98,7 +98,7 @@ PcdScans::PcdScans(std::vector<PcdScan> scans, ScanFrame frame, std::vector<PcdR
     : scans_(std::move(scans)), opened_(std::move(opened)), frame_(frame) {
   for (std::size_t i = opened_.size(); i < scans_.size(); ++i) {
     PcdReader reader(scans_[i].path);
-    if (i < kMostOpen) opened_.push_back(std::move(reader));
+    if (i < kMaxOpen) opened_.push_back(std::move(reader));
   }
 }
 
@@ -146,7 +146,7 @@ FoundScans findScans(const std::vector<std::filesystem::path>& inputs, const std
   for (const std::filesystem::path& path : paths) {
     PcdReader reader = openScan(path);
     checked.push_back(scanPose(reader));
-    if (opened.size() < kMostOpen) opened.push_back(std::move(reader));
+    if (opened.size() < kMaxOpen) opened.push_back(std::move(reader));
   }
   if (!poses.empty()) {
     const std::vector<Pose> given = posesForScans(readPoseFile(poses), paths);

@@ -14,11 +14,11 @@
 namespace gaussmap {
 
 /// Minimum of BuildMapFileOptions::max_memory [bytes].
-inline constexpr std::size_t kLeastBuildMemory = std::size_t{1} << 20;
+inline constexpr std::size_t kMinBuildMemory = std::size_t{1} << 20;
 
 /// Options of buildMapFile().
 struct BuildMapFileOptions {
-  /// Approximate memory limit [bytes], >= kLeastBuildMemory. The scans being read and the memory of the program itself
+  /// Approximate memory limit [bytes], >= kMinBuildMemory. The scans being read and the memory of the program itself
   /// are not included.
   std::size_t max_memory = std::size_t{1} << 30;
   Budget budget = PerCell{};  ///< PerCell or MaxGaussians

@@ -46,8 +46,8 @@ struct MapUpdate {
 /// The update is atomic: readers see either the old or the new file, also after a crash. The file is copied, changed
 /// and renamed, so the disk holds both for a short time. Only one writer can run at a time. `edit` can change the
 /// metadata given to save(). Throws FileError if the file cannot be read or written, or if the map accepts no more
-/// points (see GaussianMap::canGrow()). Throws std::invalid_argument if the cells of `added` differ from those of the
-/// map, or if the budget is below 1.
+/// points (see GaussianMap::acceptsScans()). Throws std::invalid_argument if the cells of `added` differ from those of
+/// the map, or if the budget is below 1.
 template <int D>
 GAUSSMAP_API MapUpdate updateMap(const std::filesystem::path& path, const MomentGrid<D>& added,
                                  const UpdateOptions& options = {}, const std::function<void(MapMetadata&)>& edit = {});
