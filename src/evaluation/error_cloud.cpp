@@ -12,10 +12,10 @@
 namespace gaussmap::detail {
 namespace {
 
-constexpr double kExactFloats = 16384.0;  // [m]; nearer to the origin, a float resolves 1 mm
+constexpr double kExactFloats = 16384.0;  // [m]; up to this distance from the origin, a float resolves 1 mm
 constexpr double kOriginStep = 1024.0;    // [m]
 
-/// Where the coordinates start from: zero for a cloud near the origin.
+/// Returns the origin of the written coordinates: zero for a cloud near the origin.
 Pose originOf(const std::vector<Vector<3>>& points) {
   Pose origin;
   Vector<3> low = points.front(), high = low;
@@ -32,7 +32,7 @@ Pose originOf(const std::vector<Vector<3>>& points) {
 
 std::uint32_t errorColour(double error, double red) {
   const double share = red > 0.0 ? std::clamp(error / red, 0.0, 1.0) : 0.0;
-  const auto channel = [share](double peak) {  // full within 1/4 of its peak, nothing 1/2 away from it
+  const auto channel = [share](double peak) {  // full up to 1/4 from its peak, zero from 1/2 on
     return static_cast<std::uint32_t>(std::lround(255.0 * std::clamp(2.0 - 4.0 * std::abs(share - peak), 0.0, 1.0)));
   };
   return channel(1.0) << 16 | channel(0.5) << 8 | channel(0.0);
@@ -40,7 +40,7 @@ std::uint32_t errorColour(double error, double red) {
 
 void writeErrorCloud(const std::filesystem::path& path, const std::vector<Vector<3>>& points,
                      const std::vector<double>& errors) {
-  if (points.empty()) throw std::invalid_argument("no points to write the errors of");
+  if (points.empty()) throw std::invalid_argument("no points: an error cloud needs at least one");
   if (errors.size() != points.size())
     throw std::invalid_argument(std::to_string(errors.size()) + " errors for " + std::to_string(points.size()) +
                                 " points");

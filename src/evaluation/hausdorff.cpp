@@ -19,7 +19,7 @@ DistanceSummary summarise(std::vector<double> distances) {
   if (distances.empty()) throw std::invalid_argument("no distances to summarise");
   DistanceSummary summary;
   summary.count = distances.size();
-  double sum = 0.0, squares = 0.0;  // before the quantiles shuffle the values
+  double sum = 0.0, squares = 0.0;  // before the quantiles reorder the values
   for (const double distance : distances) {
     sum += distance;
     squares += distance * distance;
@@ -68,7 +68,7 @@ HausdorffMaxima hausdorffMaxima(const std::vector<Vector<3>>& a, const std::vect
   return {largestNearestDistance(trees.a(), trees.b(), threads), largestNearestDistance(trees.b(), trees.a(), threads)};
 }
 
-/// Points and their tree; in front of them a mesh if that is the reference.
+/// The points of the reference and their tree, and the mesh if the reference is a mesh.
 struct Reference::Parts {
   explicit Parts(std::vector<Vector<3>> given)
       : points(std::move(given)), tree((checkSet(points, "reference"), points)) {}
@@ -80,7 +80,7 @@ struct Reference::Parts {
   std::vector<Vector<3>> points;
   PointTree tree;
   std::optional<MeshDistance> mesh;
-  std::unique_ptr<const Parts> near;  // samples of a map: those near their means, nothing if there are none
+  std::unique_ptr<const Parts> near;  // if the reference is a map: its samples near their means; or null
   bool is_map = false;
 };
 
@@ -119,7 +119,7 @@ HausdorffResult Reference::compare(const std::vector<Vector<3>>& subject, int th
 
 MapHausdorff Reference::compareSamples(const MapSamples<3>& samples, int threads, PointDistances* distances) const {
   if (samples.points.empty())
-    throw std::invalid_argument("no samples: no Gaussian of the scale has mass in its bounds");
+    throw std::invalid_argument("no samples: no Gaussian of the scale has probability mass within its bounds");
 
   MapHausdorff result;
   result.samples = samples.points.size();
@@ -133,7 +133,7 @@ MapHausdorff Reference::compareSamples(const MapSamples<3>& samples, int threads
     result.within_two_sigma = summariseBoth(parts_->near->forward(near, tree, threads),
                                             nearestDistances(parts_->near->tree, tree, threads), threads);
   } else if (!near.empty() && !parts_->is_map) {
-    std::vector<double> forward;  // the distances of the near samples are among those of all
+    std::vector<double> forward;  // the distances of the near samples are already known
     forward.reserve(near.size());
     for (std::size_t i = 0; i < all.forward.size(); ++i)
       if (samples.mahalanobis[i] <= 2.0) forward.push_back(all.forward[i]);

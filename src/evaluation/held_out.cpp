@@ -21,15 +21,15 @@ namespace {
 
 constexpr double kLogTwoPi = 1.8378770664093454836;
 constexpr double kNothing = -std::numeric_limits<double>::infinity();
-constexpr double kNegligible = 45.0;    // [nat]; e^-45 of a sum is lost in doubles
-constexpr std::size_t kGrain = 4096;    // points or Gaussians a task; at most so many points of a cell together
-constexpr std::size_t kCellGrain = 16;  // cells a task
+constexpr double kNegligible = 45.0;    // [nat]; e^-45 of a sum is below the precision of a double
+constexpr std::size_t kGrain = 4096;    // points or Gaussians per task; maximum size of a PointsOfCell
+constexpr std::size_t kCellGrain = 16;  // cells per task
 
-/// ln(w N(x; mu, Sigma)) as constant - |whiten (x - mu)|^2 / 2.
+/// A Gaussian prepared for evaluation: ln(w N(x; mu, Sigma)) = constant - |whiten (x - mu)|^2 / 2.
 template <int D>
 struct Factorised {
-  Vector<D> mean;    // [m] about the centre of its cell
-  Matrix<D> whiten;  // inverse of the lower Cholesky factor: lower too
+  Vector<D> mean;    // [m], relative to the centre of its cell
+  Matrix<D> whiten;  // inverse of the lower Cholesky factor, also a lower triangle
   double constant;
 
   double logTerm(const Vector<D>& local) const {
@@ -59,14 +59,14 @@ std::vector<Factorised<D>> factorise(const GaussianMap<D>& map, int scale, int t
   return all;
 }
 
-/// A point's place in the input, under the cell it lies in.
+/// The index of a point in the input, and the cell that contains the point.
 template <int D>
 struct PlacedPoint {
   CellKey<D> key;
   std::uint32_t index;
 };
 
-/// The points of one cell, or a part of them: a range of the sorted points.
+/// A range of the sorted points: all points of one cell, or some of them.
 template <int D>
 struct PointsOfCell {
   CellKey<D> key;
@@ -98,7 +98,7 @@ std::vector<PointsOfCell<D>> cellsOf(const std::vector<PlacedPoint<D>>& placed) 
   return cells;
 }
 
-/// An occupied cell among the 3^D around a key.
+/// An occupied cell among the 3^D cells around a key.
 template <int D>
 struct Neighbour {
   Vector<D> centre;  // [m]
@@ -161,13 +161,13 @@ double logOfBoth(double a, double b) {
   return large + std::log1p(std::exp(small - large));
 }
 
-/// Of every point ln of the mixture there, and whether it lies in a cell.
+/// Per point: ln of the mixture density there, and whether the point lies in an occupied cell.
 struct Scores {
   std::vector<double> values;
   std::vector<char> in_cell;
 };
 
-/// The mixture of one scale, or of its leaves, weights divided by `weight`.
+/// Scores the points with the mixture of one scale, or of its leaves. Divides all weights by `weight`.
 template <int D>
 Scores scoreScale(const GaussianMap<D>& map, int scale, Cells which, double weight,
                   const std::vector<Vector<D>>& points, int threads) {
@@ -234,12 +234,12 @@ HeldOutResult summarise(Scores scores, double volume, const HeldOutOptions& opti
     sum += value;
   }
   result.mean = sum / static_cast<double>(result.count);
-  result.mean_inside = sum_inside / static_cast<double>(result.count - result.nowhere);  // NaN: 0 / 0
+  result.mean_inside = sum_inside / static_cast<double>(result.count - result.nowhere);  // 0 / 0 gives NaN
   result.median = percentile(values, 50);
   return result;
 }
 
-/// Throws std::invalid_argument if there is nothing to score with.
+/// Returns the volume V [m^D]. Throws std::invalid_argument if there are no points, or if an option is not valid.
 template <int D>
 double volumeOf(const std::vector<Vector<D>>& points, const HeldOutOptions& options) {
   checkOptions(options);

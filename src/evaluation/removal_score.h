@@ -6,7 +6,7 @@
 
 namespace gaussmap::detail {
 
-/// How well moving objects were taken out of scans, by points whose truth is known.
+/// How well moving objects were removed from scans, measured with points whose truth is known.
 struct RemovalScore {
   std::size_t still = 0, still_kept = 0;
   std::size_t moving = 0, moving_removed = 0;

@@ -12,8 +12,8 @@
 
 namespace gaussmap::detail {
 
-/// Finds line segments near a point or in a ray's way: they stand as upright walls in a MeshTree, which is asked at
-/// half their height.
+/// Finds the line segment that is nearest to a point, or that a ray hits first. The segments are vertical walls in a
+/// MeshTree; queries are at half the height of the walls.
 class SegmentTree {
  public:
   struct Hit {
@@ -24,13 +24,14 @@ class SegmentTree {
   /// Throws std::invalid_argument if an end point is not finite.
   explicit SegmentTree(const std::vector<Segment>& segments) : tree_(asWalls(segments)) {}
 
-  /// To the nearest segment [m]; infinity if there is none.
+  /// Returns the distance to the nearest segment [m]; infinity if there is none.
   double distance(const Vector<2>& point) const {
     const auto foot = tree_.nearest({point.x(), point.y(), 0.0});
     return foot ? foot->distance : std::numeric_limits<double>::infinity();
   }
 
-  /// What the ray from `origin` under `bearing` [rad, map frame] meets first, from either side.
+  /// Returns the first hit of the ray from `origin` in the direction `bearing` [rad, map frame], from either side;
+  /// std::nullopt if there is none.
   std::optional<Hit> intersect(const Vector<2>& origin, double bearing) const {
     const auto hit = tree_.intersect({origin.x(), origin.y(), 0.0}, {std::cos(bearing), std::sin(bearing), 0.0});
     if (!hit) return std::nullopt;
@@ -38,7 +39,7 @@ class SegmentTree {
   }
 
  private:
-  /// Two triangles a segment, in its order.
+  /// Returns two triangles per segment, in the order of the segments.
   static TriangleMesh asWalls(const std::vector<Segment>& segments) {
     TriangleMesh mesh;
     for (const Segment& segment : segments) {

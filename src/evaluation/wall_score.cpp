@@ -19,7 +19,7 @@ namespace {
 constexpr double kSameWay = 20.0 * kPi / 180.0;
 constexpr double kSamePoint = 1e-6;  // [m]
 
-/// Share of the length of `lines` that is within the tolerance of the tree.
+/// Returns the share of the length of `lines` that is within the tolerance of a segment of the tree; 1 without lines.
 double shareNear(const std::vector<Segment>& lines, const SegmentTree& tree, const WallScoreOptions& options) {
   double all = 0.0, near = 0.0;
   for (const Segment& line : lines) {
@@ -37,7 +37,8 @@ double angleBetween(const Vector<2>& from, const Vector<2>& to) {
   return std::atan2(from.x() * to.y() - from.y() * to.x(), from.dot(to));
 }
 
-/// (offset, angle) of a segment against the wall that it stands for, if there is one.
+/// Returns (offset [m], angle [rad]) of a segment relative to the wall that it represents. Returns std::nullopt if
+/// there is no such wall.
 std::optional<Vector<2>> errorOf(const Segment& segment, const std::vector<Segment>& walls,
                                  const WallScoreOptions& options) {
   const Vector<2> middle = (segment.start + segment.end) / 2.0;

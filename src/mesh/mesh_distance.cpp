@@ -9,10 +9,10 @@
 namespace gaussmap::detail {
 namespace {
 
-constexpr std::size_t kGrain = 512;  // points a task
+constexpr std::size_t kGrain = 512;  // points per task
 
 const TriangleMesh& notEmpty(const TriangleMesh& mesh) {
-  if (mesh.triangles.empty()) throw std::invalid_argument("a mesh without triangles has no distance");
+  if (mesh.triangles.empty()) throw std::invalid_argument("the mesh has no triangles: distances need at least one");
   return mesh;
 }
 

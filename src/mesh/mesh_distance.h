@@ -10,25 +10,26 @@
 
 namespace gaussmap::detail {
 
-/// Exact distances from points to a mesh, to its faces, edges and corners alike. Built once, asked by any thread.
+/// Computes exact distances from points to a mesh, that is to its faces, edges and corners. It is built once, and any
+/// thread may query it.
 class MeshDistance {
  public:
   /// Throws std::invalid_argument if the mesh has no triangle or a fault (see checkMesh()).
   explicit MeshDistance(const TriangleMesh& mesh);
 
-  /// Distance [m] from a point to the nearest point of the mesh. Throws std::invalid_argument unless the point is
-  /// finite and within 1e70 m.
+  /// Returns the distance [m] from a point to the nearest point of the mesh. Throws std::invalid_argument unless the
+  /// point is finite and within 1e70 m.
   double distance(const Eigen::Vector3d& point) const;
-  /// That nearest point too.
+  /// Like distance(), but also returns the nearest point and its triangle.
   MeshFoot nearest(const Eigen::Vector3d& point) const;
 
  private:
   MeshTree tree_;
 };
 
-/// For every point its distance to the mesh [m], one frame, n values in the order of the points. `threads` = 0: all;
-/// the result is the same to the last bit for any number.
-/// Throws std::invalid_argument, naming the index, if a point is not finite; otherwise as MeshDistance.
+/// Returns the distance of each point to the mesh [m]: n values in the order of the points. Points and mesh are in one
+/// frame. `threads`: 0 = all cores.
+/// Throws std::invalid_argument, with the index, if a point is not finite; otherwise like MeshDistance.
 std::vector<double> meshDistances(const std::vector<Vector<3>>& points, const TriangleMesh& mesh, int threads = 0);
 std::vector<double> meshDistances(const std::vector<Vector<3>>& points, const MeshDistance& mesh, int threads = 0);
 

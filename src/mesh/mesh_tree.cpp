@@ -17,9 +17,9 @@ constexpr int kDeepestByCost = 64;  // below it halves of equal number: at most 
 constexpr std::size_t kStack = 128;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kFarthest = 1e70;      // [m]; fourth powers beyond it would overflow
-constexpr double kNeedle = 1e-20;       // squared sine of an angle below which a triangle is its sides
-constexpr double kEdge = 1e-12;         // how far beyond its edges a triangle is hit, as a part of its sides
-constexpr double kBoxRounding = 1e-14;  // relative; boxes are hit and looked into rather too often
+constexpr double kNeedle = 1e-20;       // squared sine of an angle: a thinner triangle is treated as its three sides
+constexpr double kEdge = 1e-12;         // a triangle is hit up to this share of its sides beyond its edges
+constexpr double kBoxRounding = 1e-14;  // relative; makes the tests of boxes conservative
 
 struct Box {
   Eigen::Vector3d low = Eigen::Vector3d::Constant(kInfinity), high = Eigen::Vector3d::Constant(-kInfinity);
@@ -31,20 +31,20 @@ struct Box {
     low = low.cwiseMin(other.low);
     high = high.cwiseMax(other.high);
   }
-  /// Half the surface.
+  /// Returns half the surface area [m^2].
   double size() const {
     const Eigen::Vector3d side = high - low;
     return side.x() * side.y() + side.y() * side.z() + side.z() * side.x();
   }
 };
 
-/// Range where a ray enters a box, infinity if it misses it or only meets it beyond `limit`.
+/// Returns the range where a ray enters a box [m]; infinity if it misses the box or meets it only beyond `limit`.
 double entry(const Eigen::Vector3d& low, const Eigen::Vector3d& high, const Eigen::Vector3d& origin,
              const Eigen::Vector3d& inverse, double limit) {
   double in = 0.0, out = limit;
   for (int axis = 0; axis < 3; ++axis) {
     const double a = (low(axis) - origin(axis)) * inverse(axis), b = (high(axis) - origin(axis)) * inverse(axis);
-    // 0 * infinity, a ray within the plane of a face, is NaN: written so that it leaves `in` and `out` alone.
+    // A ray within the plane of a face gives 0 * infinity = NaN, which must not change `in` and `out`.
     const double near = a < b ? a : b, far = a < b ? b : a;
     if (std::isnan(a) || std::isnan(b)) continue;
     in = std::max(in, near);
@@ -57,15 +57,15 @@ double squaredDistance(const Eigen::Vector3d& low, const Eigen::Vector3d& high, 
   return (low - point).cwiseMax(point - high).cwiseMax(0.0).squaredNorm();
 }
 
-/// The point of the segment from 0 to `side` nearest to `offset`.
+/// Returns the point of the segment from 0 to `side` that is nearest to `offset`.
 Eigen::Vector3d nearestOnSide(const Eigen::Vector3d& side, const Eigen::Vector3d& offset) {
   const double square = side.squaredNorm();
   return square > 0.0 ? Eigen::Vector3d(std::clamp(offset.dot(side) / square, 0.0, 1.0) * side)
                       : Eigen::Vector3d(Eigen::Vector3d::Zero());
 }
 
-/// The point of the triangle 0, u, v nearest to `offset`. By the normal, not by coordinates along u and v: those of a
-/// long thin triangle lose half their digits.
+/// Returns the point of the triangle 0, u, v that is nearest to `offset`. Uses the normal instead of coordinates along
+/// u and v, which lose half their digits in a long thin triangle.
 Eigen::Vector3d nearestOnTriangle(const Eigen::Vector3d& u, const Eigen::Vector3d& v, const Eigen::Vector3d& offset) {
   const Eigen::Vector3d normal = u.cross(v), third = v - u;
   const double square = normal.squaredNorm();
@@ -84,7 +84,7 @@ Eigen::Vector3d nearestOnTriangle(const Eigen::Vector3d& u, const Eigen::Vector3
 
 }  // namespace
 
-/// Top-down, by the surface-area heuristic in bins along the longest axis of the centres.
+/// Builds the tree top-down by the surface-area heuristic, in bins along the longest axis of the centres.
 struct MeshTree::Builder {
   struct Item {
     Box box;
@@ -112,7 +112,7 @@ struct MeshTree::Builder {
     fill(left + 1, middle, last, depth + 1);
   }
 
-  /// Orders the items and says where the second part begins; neither part is empty.
+  /// Reorders the items and returns where the second part begins. Neither part is empty.
   std::uint32_t split(std::uint32_t first, std::uint32_t last, const Box& box, const Box& centres, int depth) {
     int axis = 0;
     const double extent = (centres.high - centres.low).maxCoeff(&axis);
@@ -129,7 +129,7 @@ struct MeshTree::Builder {
     return first + (last - first) / 2;
   }
 
-  /// The first bin of the right part.
+  /// Returns the first bin of the right part for the cut with the lowest cost.
   template <typename Iterator, typename Bin>
   static std::size_t bestCut(Iterator begin, Iterator end, const Bin& bin) {
     std::array<Box, kBins> boxes;

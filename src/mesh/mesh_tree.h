@@ -13,38 +13,39 @@
 
 namespace gaussmap::detail {
 
-/// Where a ray meets a mesh first.
+/// The first hit of a ray on a mesh.
 struct MeshHit {
   double range = 0.0;          ///< along the ray [m], > 0
   double cosine = 1.0;         ///< between the ray and the triangle's normal, >= 0
   std::uint32_t triangle = 0;  ///< index in the mesh
 };
 
-/// Where a mesh is nearest to a point.
+/// The point of a mesh that is nearest to another point.
 struct MeshFoot {
   Eigen::Vector3d point;       ///< the nearest point of the mesh [m]
-  double distance = 0.0;       ///< to it [m]
+  double distance = 0.0;       ///< distance to it [m]
   std::uint32_t triangle = 0;  ///< index in the mesh
 };
 
-/// A bounding-volume hierarchy over the triangles of a mesh, in doubles. Immutable once built, so that any number of
-/// threads may ask; the answers do not depend on their number. The mesh itself is not kept.
+/// A bounding-volume hierarchy over the triangles of a mesh, in doubles. It does not change once it is built, so any
+/// number of threads may query it. It does not keep the mesh itself.
 class MeshTree {
  public:
-  /// Throws std::invalid_argument if the mesh has a fault (see checkMesh()). An empty mesh is legal: nothing is hit.
+  /// Throws std::invalid_argument if the mesh has a fault (see checkMesh()). An empty mesh is allowed and never hit.
   explicit MeshTree(const TriangleMesh& mesh);
 
-  /// First hit of the ray origin + r direction with 0 < r <= max_range, from either side; nothing if there is none.
-  /// `direction` has unit length. Edges belong to both triangles, so that no ray slips through between them; a
-  /// ray that runs within a triangle's plane does not meet it, nor does any ray meet a triangle without area. The range
-  /// is known to some 1e-15 of it divided by the cosine: a ray that grazes a face may end a bit beyond its edge.
+  /// Returns the first hit of the ray origin + r direction with 0 < r <= max_range, from either side; std::nullopt if
+  /// there is none. `direction` has unit length. Edges belong to both triangles, so no ray passes between them. A ray
+  /// within the plane of a triangle does not hit it, and no ray hits a triangle without area. The relative error of the
+  /// range is about 1e-15 divided by the cosine: a ray that grazes a face may end slightly beyond its edge.
   std::optional<MeshHit> intersect(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                                    double max_range = std::numeric_limits<double>::infinity()) const;
 
-  /// Nothing if the mesh is empty, or the point is not finite or beyond 1e70 m.
+  /// Returns the nearest point of the mesh. Returns std::nullopt if the mesh is empty, or if the point is not finite or
+  /// beyond 1e70 m.
   std::optional<MeshFoot> nearest(const Eigen::Vector3d& point) const;
 
-  std::size_t size() const { return triangles_.size(); }  ///< triangles
+  std::size_t size() const { return triangles_.size(); }  ///< number of triangles
 
  private:
   struct Triangle {
@@ -53,11 +54,11 @@ class MeshTree {
   };
   struct Node {
     Eigen::Vector3d low, high;
-    std::uint32_t first;  // of its triangles, or, if it has none of its own, its left child; the right one is next
-    std::uint32_t count;  // of its own triangles
+    std::uint32_t first;  // in a leaf its first triangle, else its left child; the right child is the next node
+    std::uint32_t count;  // number of triangles in a leaf, else 0
   };
   struct Builder;
-  std::vector<Triangle> triangles_;  // those of a leaf stand together
+  std::vector<Triangle> triangles_;  // those of a leaf are consecutive
   std::vector<Node> nodes_;          // 0 is the root
 };
 

@@ -18,7 +18,7 @@ std::uint32_t addVertex(TriangleMesh& mesh, const Eigen::Vector3d& vertex) {
   return static_cast<std::uint32_t>(mesh.vertices.size() - 1);
 }
 
-/// Four corners, counter-clockwise from the open side.
+/// Adds two triangles with these four corners, which are counter-clockwise as seen from the open side.
 void addQuad(TriangleMesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
   mesh.triangles.push_back({a, b, c});
   mesh.triangles.push_back({a, c, d});
@@ -37,7 +37,7 @@ std::uint32_t next(std::uint32_t i, int facets) {
 int facetsWithin(double deviation, double radius) {
   if (!(deviation > 0.0))
     throw std::invalid_argument("deviation = " + std::to_string(deviation) + ": must be a positive number of metres");
-  // A chord over the angle 2 a is at most r (1 - cos a) off its arc.
+  // The distance between a chord over the angle 2 a and its arc is at most r (1 - cos a).
   const double angle = std::acos(std::max(0.5, 1.0 - deviation / radius));
   return static_cast<int>(std::min(double(kMaxFacets), std::ceil(kPi / angle)));
 }
@@ -111,13 +111,14 @@ TriangleMesh ellipsoidMesh(const Eigen::Vector3d& centre, const Eigen::Vector3d&
 }
 
 TriangleMesh profileMesh(const std::vector<Eigen::Vector2d>& top, double bottom, double y_low, double y_high) {
-  if (top.size() < 2) throw std::invalid_argument("a profile needs two points at least");
+  if (top.size() < 2) throw std::invalid_argument("a profile needs at least 2 points");
   TriangleMesh mesh;
   for (const Eigen::Vector2d& point : top)
     for (const double y : {y_low, y_high})
       for (const double z : {bottom, point.y()}) mesh.vertices.emplace_back(point.x(), y, z);
   const auto last = static_cast<std::uint32_t>(4 * (top.size() - 1));
-  for (std::uint32_t i = 0; i < last; i += 4) {  // i: low side below, + 1 above, + 2 high side below, + 3 above
+  // i: bottom of the low side, i + 1: its top; i + 2: bottom of the high side, i + 3: its top
+  for (std::uint32_t i = 0; i < last; i += 4) {
     addQuad(mesh, i, i + 4, i + 5, i + 1);
     addQuad(mesh, i + 2, i + 3, i + 7, i + 6);
     addQuad(mesh, i + 1, i + 5, i + 7, i + 3);

@@ -29,8 +29,9 @@ void checkMesh(const TriangleMesh& mesh) {
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
     for (const std::uint32_t index : mesh.triangles[i])
       if (index >= mesh.vertices.size())
-        throw std::invalid_argument("triangle " + std::to_string(i) + " of the mesh asks for vertex " +
-                                    std::to_string(index) + " of " + std::to_string(mesh.vertices.size()));
+        throw std::invalid_argument("triangle " + std::to_string(i) + " of the mesh has vertex index " +
+                                    std::to_string(index) + ", but the number of vertices is " +
+                                    std::to_string(mesh.vertices.size()));
 }
 
 double surfaceArea(const TriangleMesh& mesh) {
@@ -66,7 +67,7 @@ std::vector<Eigen::Vector3d> sampleSurface(const TriangleMesh& mesh, std::size_t
   for (const TriangleMesh::Triangle& triangle : mesh.triangles) area_up_to.push_back(sum += area(mesh, triangle));
   if (!(sum > 0.0 && std::isfinite(sum))) throw std::invalid_argument("the mesh has no area to sample");
 
-  // One offset for equal steps along the summed area, so that no triangle gets more or less than its share rounded.
+  // Takes equal steps along the summed area, from one random offset. Each triangle gets its share, rounded up or down.
   Random random(seed);
   const double offset = random.uniform();
   std::vector<Eigen::Vector3d> points;

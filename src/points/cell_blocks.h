@@ -13,45 +13,46 @@
 
 namespace gaussmap::detail {
 
-/// Of a byte: without an instruction of its own the compiler calls a function.
+/// Number of set bits per byte value. Without a POPCNT instruction, __builtin_popcount() would call a function.
 inline const std::array<std::uint8_t, 256> kBitCount = [] {
   std::array<std::uint8_t, 256> counts{};
   for (unsigned i = 1; i < 256; ++i) counts[i] = std::uint8_t(counts[i / 2] + i % 2);
   return counts;
 }();
 
-/// A cell of one level: its points, and its children among the cells of the next finer level. An octant's points are
-/// borders[k] ... borders[k + 1] - 1; of a cell that is not split only the first and the last border count.
+/// A cell of one octree level, with its points and its children in the next finer level. The points of octant k are
+/// borders[k] ... borders[k + 1] - 1. If the cell is not split, only the first and the last border are valid.
 struct OctreeCell {
   std::array<std::uint32_t, 9> borders{};
   std::uint32_t first_child = 0;
-  std::uint32_t children = 0;  // a bit an octant
+  std::uint32_t children = 0;  // one bit per octant that has points
 
   PointRange points() const { return {borders[0], borders[8]}; }
 };
 
-/// One of the 3 x 3 x 3 cells around an open one.
+/// One of the 3 x 3 x 3 cells around an open cell, or the open cell itself.
 struct Near {
-  std::uint32_t cell;   // of its level
-  std::uint32_t place;  // of the 27, x fastest
+  std::uint32_t cell;   // index in its level
+  std::uint32_t place;  // position among the 27 cells, x fastest
 };
 inline constexpr std::uint32_t kMiddle = 13;
 
-/// A cell with queries whose block of 3 x 3 x 3 cells has enough points, maybe enough for finer ones.
+/// A cell with queries whose block of 3 x 3 x 3 cells has enough points. A finer block may have enough points too.
 struct OpenCell {
   PointRange queries;
-  std::uint32_t first_near = 0, near_count = 0;  // in the list of those that there are
+  std::uint32_t first_near = 0, near_count = 0;  // range in the list of its Near cells that exist
 };
 
-/// The 3 x 3 x 3 cells around an open one have 6 x 6 x 6 octants. The block of 3 x 3 x 3 octants around octant k of the
-/// cell in the middle lies in eight of the cells, the block of 5 x 5 x 5 in all. Bits 8 j + octant of a word stand for
-/// the octants of eight cells: of the corners of the smaller block, or of cells 8 w ... 8 w + 7.
+/// Tables of the octants that belong to a block. The 3 x 3 x 3 cells around an open cell have 6 x 6 x 6 octants. The
+/// block of 3 x 3 x 3 octants around octant k of the middle cell lies in eight of the cells, the block of 5 x 5 x 5 in
+/// all 27. Bit 8 j + octant of a word represents an octant of the j-th of eight cells. These are either the eight cells
+/// of the smaller block, or the cells 8 w ... 8 w + 7 of the 27.
 struct Blocks {
-  static constexpr std::array<std::uint8_t, 8> kCorners = {0, 1, 3, 4, 9, 10, 12, 13};  // places from the lowest one on
-  std::array<std::uint8_t, 8> lowest{};                 // of k: the place of the block's lowest cell
-  std::array<std::uint64_t, 8> three{};                 // of k: the block's octants
-  std::array<std::array<std::uint8_t, 64>, 8> place{};  // of k: where each is in the finer 3 x 3 x 3
-  std::array<std::array<std::uint64_t, 4>, 8> five{};   // of k: what lies two off along one axis, one along others
+  static constexpr std::array<std::uint8_t, 8> kCorners = {0, 1, 3, 4, 9, 10, 12, 13};  // relative to `lowest`
+  std::array<std::uint8_t, 8> lowest{};                 // per k: place of the block's lowest cell
+  std::array<std::uint64_t, 8> three{};                 // per k: octants of the block of 3 x 3 x 3
+  std::array<std::array<std::uint8_t, 64>, 8> place{};  // per k: place of each octant among the finer 27
+  std::array<std::array<std::uint64_t, 4>, 8> five{};   // per k: octants two off along just one axis
 
   Blocks() {
     for (unsigned k = 0; k < 8; ++k) {
@@ -76,8 +77,8 @@ struct Blocks {
 };
 inline const Blocks kBlocks;
 
-/// The cells around an open one. Which octants have points is as good as random, and a wrongly guessed branch costs
-/// more than ten sums: so octants are told by bits, and there is one loop over the bits of a block.
+/// The cells around an open cell. Which octants have points is almost random, and a mispredicted branch costs more than
+/// ten sums. Therefore octants are represented by bits, and one loop runs over the bits of a block.
 class Surroundings {
  public:
   void add(const OctreeCell& cell, std::uint32_t place) {
@@ -85,14 +86,14 @@ class Surroundings {
     cells_[place] = &cell;
   }
   const OctreeCell& middle() const { return *cells_[kMiddle]; }
-  /// Of the block around octant k, those that have points.
+  /// Returns the octants with points in the block of 3 x 3 x 3 around octant k.
   std::uint64_t three(unsigned k) const {
     std::uint64_t octants = 0;
     for (std::size_t j = 0; j < 8; ++j)
       octants |= std::uint64_t{children_[kBlocks.lowest[k] + Blocks::kCorners[j]]} << 8 * j;
     return octants & kBlocks.three[k];
   }
-  /// Their points, joined to the ranges; returns how many.
+  /// Adds the points of these octants to the ranges. Returns the number of points.
   std::uint32_t gatherThree(unsigned k, std::uint64_t octants, PlaneRanges& ranges) const {
     std::uint32_t count = 0;
     PlaneRanges::Adder adder(ranges);
@@ -103,7 +104,7 @@ class Surroundings {
     }
     return count;
   }
-  /// The same of what the next larger block has besides.
+  /// Like gatherThree(), for the octants that the block of 5 x 5 x 5 has in addition.
   std::uint32_t gatherFive(unsigned k, PlaneRanges& ranges) const {
     std::uint32_t count = 0;
     PlaneRanges::Adder adder(ranges);
@@ -118,7 +119,7 @@ class Surroundings {
     }
     return count;
   }
-  /// The finer cells of the block around octant k.
+  /// Appends the finer cells of the block around octant k to `near`.
   void append(unsigned k, std::uint64_t octants, std::vector<Near>& near) const {
     std::array<Near, 27> finer;
     std::size_t size = 0;
@@ -131,7 +132,7 @@ class Surroundings {
   }
 
  private:
-  std::array<std::uint8_t, 32> children_{};  // of each of the 27 cells a bit an octant
+  std::array<std::uint8_t, 32> children_{};  // OctreeCell::children of the 27 cells
   std::array<const OctreeCell*, 32> cells_;
 };
 

@@ -18,13 +18,13 @@
 
 namespace gaussmap::detail {
 
-/// Indices first ... last - 1.
+/// The indices first ... last - 1.
 struct PointRange {
   std::uint32_t first = 0, last = 0;
   std::uint32_t size() const { return last - first; }
 };
 
-/// The cube that cells halve.
+/// The root cube of an octree [m].
 struct Cube {
   Eigen::Vector3d low = Eigen::Vector3d::Zero();
   double side = 1.0;
@@ -50,7 +50,7 @@ inline bool isFinite(const float* p) {
   return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
 }
 
-/// Finite points in Morton order.
+/// The finite points within a cube, in Morton order.
 struct SortedBlocks {
   MortonItems items;
   std::vector<std::array<float, 4>, PagesAllocator<std::array<float, 4>>> points;  // x y z 1, and padding
@@ -78,12 +78,12 @@ struct SortedBlocks {
   static constexpr std::uint64_t kNoCode = ~std::uint64_t{0};
 };
 
-/// Borders of the octants of a range of sorted items at a level (shift = 3 (level - 1)): 9 indices.
+/// Returns the 9 borders between the octants of a range of sorted items at a level. shift = 3 (level - 1).
 inline std::array<std::uint32_t, 9> octantsOf(const MortonItems& items, PointRange range, int shift) {
   std::array<std::uint32_t, 9> border;
   border[0] = range.first;
   if (range.size() < 128) {
-    std::uint64_t counts = 0;  // a byte an octant
+    std::uint64_t counts = 0;  // one byte per octant
     for (std::uint32_t i = range.first; i < range.last; ++i)
       counts += std::uint64_t{1} << 8 * (items[i].code >> shift & 7);
     const std::uint64_t ends = counts * 0x0101010101010101ull;
@@ -101,7 +101,7 @@ inline std::array<std::uint32_t, 9> octantsOf(const MortonItems& items, PointRan
   return border;
 }
 
-/// The smallest cube around the finite points of both.
+/// Returns the smallest cube around the finite points of both.
 inline Cube cubeOf(const PointsView& surface, const PointsView& queries) {
   Eigen::Array3d low = Eigen::Array3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
   for (const PointsView* view : {&surface, &queries})
@@ -120,7 +120,7 @@ inline Cube cubeOf(const PointsView& surface, const PointsView& queries) {
   return cube;
 }
 
-/// Without what lies far off, if that makes it much smaller: cells are a fraction of it.
+/// Returns a cube without outliers if it is much smaller than `all`, else `all`. The size of cells depends on the cube.
 inline Cube withoutStrays(const Cube& all, const PointsView& surface) {
   constexpr std::size_t kMaxSamples = 4096;
   std::array<std::vector<float>, 3> axes;
@@ -134,7 +134,7 @@ inline Cube withoutStrays(const Cube& all, const PointsView& surface) {
     const auto few = std::ptrdiff_t(axes[axis].size() / 100);
     const auto begin = axes[axis].begin(), end = axes[axis].end(), lower = begin + few, upper = end - 1 - few;
     std::nth_element(begin, lower, end);
-    std::nth_element(lower + 1, upper, end);  // *lower stays
+    std::nth_element(lower + 1, upper, end);  // does not move *lower
     low[Eigen::Index(axis)] = double(*lower);
     high[Eigen::Index(axis)] = double(*upper);
   }

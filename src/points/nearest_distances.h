@@ -7,11 +7,11 @@
 
 namespace gaussmap::detail {
 
-/// For every point of `from` the distance [m] to the nearest point of `to`, n values in the order of `from`.
-/// Both sets in one frame [m]. The search works on differences of doubles, so that clouds far from the origin lose
-/// nothing. The order of the points does not matter, for the time neither; equal points cost only their sorting.
-/// `threads` = 0: all; the result is the same to the last bit for any number.
-/// Throws std::invalid_argument if `to` is empty while `from` is not, or if a point is not finite (naming its index).
+/// Returns per point of `from` the distance [m] to the nearest point of `to`: n values in the order of `from`.
+/// Both sets are in one frame [m]. The search uses differences of doubles, so it keeps its precision far from the
+/// origin. The order of the points does not affect the time; equal points cost only their sorting.
+/// `threads`: 0 = all cores.
+/// Throws std::invalid_argument if `to` is empty and `from` is not, or if a point is not finite (with its index).
 std::vector<double> nearestDistances(const std::vector<Vector<3>>& from, const std::vector<Vector<3>>& to,
                                      int threads = 0);
 

@@ -10,7 +10,8 @@
 
 namespace gaussmap::detail {
 
-/// Finds the nearest of some means; they must outlive it. At least one.
+/// Finds the Gaussian whose mean is nearest to a point. There must be at least one Gaussian, and the Gaussians must
+/// outlive this object.
 class NearestMean {
  public:
   explicit NearestMean(const std::vector<Gaussian<3>>& gaussians) : set_{gaussians}, tree_(3, set_) {}

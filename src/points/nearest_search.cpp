@@ -13,23 +13,24 @@ namespace {
 
 using Node = PointTree::Node;
 
-constexpr std::size_t kGroupSize = 16;      // queries that go through the tree together
+constexpr std::size_t kGroupSize = 16;      // queries that descend the tree together
 constexpr std::size_t kLanes = 4;           // queries are padded to a multiple of this
-constexpr std::size_t kGroupsPerTask = 32;  // groups a task
-constexpr std::size_t kPatience = 64;       // leaves that a group looks at before its queries go alone
+constexpr std::size_t kGroupsPerTask = 32;  // groups per task
+constexpr std::size_t kPatience = 64;       // leaves that a group visits before its queries continue one by one
 constexpr std::size_t kForever = std::numeric_limits<std::size_t>::max();
-constexpr std::size_t kGuesses = 1000;    // points looked at first to know roughly how large the largest distance is
-constexpr std::size_t kPartSize = 20000;  // points a task
-constexpr double kRounding = 1e-12;       // more than all rounding of a distance, relative to it
+constexpr std::size_t kGuesses = 1000;    // points searched first, to estimate the largest distance
+constexpr std::size_t kPartSize = 20000;  // points per task
+constexpr double kRounding = 1e-12;       // upper bound of the relative rounding error of a distance
 
-/// Squared distance of two boxes [m^2]. Rounding is monotonic, so that it never exceeds that of two points in them.
+/// Returns the squared distance of two boxes [m^2]. Rounding is monotonic: the result never exceeds the squared
+/// distance of two points in the boxes.
 double squaredGap(const Node& a, const Node& b) {
   double gap[3];
   for (std::size_t i = 0; i < 3; ++i) gap[i] = std::max(0.0, std::max(a.low[i] - b.high[i], b.low[i] - a.high[i]));
   return gap[0] * gap[0] + gap[1] * gap[1] + gap[2] * gap[2];
 }
 
-/// Points that stand together, and what is known of them.
+/// Queries that are close together, and their nearest distances so far.
 struct Group {
   Node box{};
   std::size_t count = 0;  // padded to kLanes
@@ -52,7 +53,7 @@ struct Group {
     worst = best[0];
   }
 
-  /// One query, in all lanes, and what is known of it.
+  /// Fills all lanes with one query and its squared distance so far [m^2].
   void fillWithOne(const Vector<3>& query, double square = std::numeric_limits<double>::infinity()) {
     count = kLanes;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -63,7 +64,7 @@ struct Group {
     worst = square;
   }
 
-  /// Looks at the points of a leaf: all queries against one of them after the other.
+  /// Compares the points of a leaf, one after the other, with all queries.
   void look(const PointTree& tree, const Node& leaf) {
     const double* const x = tree.axis(0) + leaf.first;
     const double* const y = tree.axis(1) + leaf.first;
@@ -80,18 +81,18 @@ struct Group {
   }
 };
 
-/// Goes through a tree with one group after the other.
+/// Searches a tree for one group of queries after the other.
 class Search {
  public:
   explicit Search(const PointTree& tree) : tree_(tree) {}
 
-  /// Pairs of points looked at so far.
+  /// Number of point pairs compared so far.
   std::size_t comparisons() const { return comparisons_; }
 
-  /// Finds the nearest of each query of the group, or stops when all are known to be at most `enough` [m^2] away.
+  /// Finds the nearest distance of each query. Stops earlier if all squared distances are at most `enough` [m^2].
   void run(Group& group, double enough) {
     if (go(group, enough, kPatience)) return;
-    Group alone;  // the group is spread out, and far from the tree's points: together its queries see too much
+    Group alone;  // for a group that is spread out and far from the tree's points: its box is near to too many nodes
     for (std::size_t i = 0; i < group.count; ++i) {
       alone.fillWithOne({group.at[0][i], group.at[1][i], group.at[2][i]}, group.best[i]);
       go(alone, enough, kForever);
@@ -105,7 +106,7 @@ class Search {
     std::uint32_t node;
   };
 
-  /// False: out of patience, not finished.
+  /// Returns false if it visited `patience` leaves and has not finished.
   bool go(Group& group, double enough, std::size_t patience) {
     const std::vector<Node>& nodes = tree_.nodes();
     open_.clear();
@@ -145,7 +146,7 @@ struct Range {
   std::uint32_t first, count;
 };
 
-/// The largest nodes of at most `size` points, and the leaves above that.
+/// Returns the largest nodes with at most `size` points, and the leaves with more.
 std::vector<std::uint32_t> nodesOf(const PointTree& tree, std::size_t size) {
   std::vector<std::uint32_t> chosen;
   std::size_t done = 0;  // points
@@ -158,7 +159,7 @@ std::vector<std::uint32_t> nodesOf(const PointTree& tree, std::size_t size) {
   return chosen;
 }
 
-/// All points of a tree in groups of neighbours; heaps of equal points in pieces.
+/// Returns all points of a tree in groups of neighbours. Many equal points are divided into several groups.
 std::vector<Range> groupsOf(const PointTree& tree) {
   std::vector<Range> groups;
   for (const std::uint32_t n : nodesOf(tree, kGroupSize)) {
@@ -198,7 +199,7 @@ std::vector<double> nearestDistances(const PointTree& from, const PointTree& to,
 
 namespace {
 
-/// A number that only grows, whoever adds to it.
+/// A maximum that several threads can raise.
 class Largest {
  public:
   void add(double value) {
@@ -212,8 +213,8 @@ class Largest {
   std::atomic<double> value_{0.0};
 };
 
-/// Raises `largest` to the largest squared distance of the points of one tree to those of the other. What is known
-/// to stay below it is not looked at: single points, and whole boxes of them.
+/// Raises `largest` to the largest squared nearest distance of the points of one tree to those of the other [m^2].
+/// Skips single points, and whole boxes of points, that are known to stay below it.
 class LargestSearch {
  public:
   LargestSearch(const PointTree& from, const PointTree& to, Largest& largest)
@@ -241,7 +242,8 @@ class LargestSearch {
   }
 
  private:
-  /// No point of a box is farther from the tree than the box's centre and half its diagonal together.
+  /// Returns true if no point of the node can raise `largest`. The distance of a point to the other tree is at most the
+  /// distance of the box's centre plus half the box's diagonal.
   bool cannotMatter(const Node& node) {
     Vector<3> centre, half;
     for (std::size_t a = 0; a < 3; ++a) {

@@ -19,14 +19,14 @@ class PointTreePair {
   std::unique_ptr<PointTree> trees_[2];
 };
 
-/// For every point of `from` the distance to the nearest point of `to` [m], in the order the points of `from` came
-/// in. Neither tree is empty. `threads` = 0: all; never shows in the result. `comparisons`, if given: how many pairs of
-/// points were looked at, what the time goes into.
+/// Returns per point of `from` the distance to the nearest point of `to` [m], in the original order of the points.
+/// Neither tree may be empty. `threads`: 0 = all cores. `comparisons`, if given, gets the number of point pairs that
+/// were compared. They take most of the time.
 std::vector<double> nearestDistances(const PointTree& from, const PointTree& to, int threads,
                                      std::size_t* comparisons = nullptr);
 
-/// The largest of these distances [m], the same to the last bit, without computing them all. Here the threads show in
-/// the comparisons.
+/// Returns the largest of these distances [m], bit-identical, without computing all of them. Here `comparisons` depends
+/// on the number of threads.
 double largestNearestDistance(const PointTree& from, const PointTree& to, int threads,
                               std::size_t* comparisons = nullptr);
 

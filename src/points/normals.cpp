@@ -23,12 +23,12 @@ using namespace detail;
 
 namespace {
 
-constexpr double kWorthAFinerBlock = 2.5;  // times min_points: with fewer, finer blocks hardly ever have enough
-constexpr std::size_t kParts = 64;         // of a level, for threads
+constexpr double kWorthAFinerBlock = 2.5;  // times min_points: with fewer points, a finer block rarely has enough
+constexpr std::size_t kParts = 64;         // parallel tasks per level
 constexpr std::size_t kGrain = 512;
 constexpr int kMaxMinPoints = 1000;
 
-/// Of one level, or a part of it.
+/// The unfinished cells of one octree level, or of one task's share of it.
 struct OpenCells {
   std::vector<OpenCell> cells;
   std::vector<Near> near;
@@ -84,7 +84,7 @@ class OctreeDescent {
   }
 
  private:
-  /// Blocks whose planes are still to be made, with the queries that get them.
+  /// Collects blocks and their queries until a batch is full. Then fits the planes and writes the normals.
   class Writer {
    public:
     explicit Writer(OctreeDescent& descent) : descent_(descent) {}
@@ -126,7 +126,7 @@ class OctreeDescent {
     write(none, 0, {0, std::uint32_t(queries_.items.size())});
   }
 
-  /// Makes the children of all cells that are wanted.
+  /// Creates the children of all cells that are marked in wanted_.
   void split(int shift) {
     const std::size_t count = cells_.size();
     parallelFor(count, options_.threads, kGrain, [&](std::size_t i) {
@@ -198,20 +198,21 @@ class OctreeDescent {
   const PointNormalOptions& options_;
   double rounding_ = 0.0;
   std::uint32_t min_ = 3, enough_ = 3;
-  bool same_ = false;  // queries and surface
+  bool same_ = false;  // queries and surface are the same points
   std::atomic<std::size_t> without_{0};
   std::vector<OctreeCell> cells_, finer_cells_;
-  std::vector<std::atomic<std::uint8_t>> wanted_, finer_wanted_;  // to be split: some finer block may hold their points
+  std::vector<std::atomic<std::uint8_t>> wanted_, finer_wanted_;  // cells to split: a finer block may use their points
 };
 
 void checkOptions(const PointNormalOptions& options, std::size_t points) {
   require(options.min_points >= 3 && options.min_points <= kMaxMinPoints, "min_points", options.min_points,
           "must be 3 to " + std::to_string(kMaxMinPoints));
   if (!options.viewpoint.allFinite()) throw std::invalid_argument("the viewpoint is not finite");
-  if (points >= std::size_t{1} << 31) throw std::invalid_argument(std::to_string(points) + " points: at most 2^31 - 1");
+  if (points >= std::size_t{1} << 31)
+    throw std::invalid_argument(std::to_string(points) + " points: at most 2^31 - 1 are possible");
 }
 
-/// Of the queries within the cube; returns how many have none.
+/// Computes the normals of the queries within the cube. Returns the number of queries without a normal.
 std::size_t normalsWithin(const Cube& cube, const PointsView& surface, const PointsView& queries,
                           const NormalsView& normals, const PointNormalOptions& options) {
   const SortedBlocks points(surface, cube, options.threads);

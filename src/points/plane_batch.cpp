@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// Newton's steps from 0 climb to the least root of the characteristic polynomial, never past it, and double the
-/// digits once they are near; a double least root (a line) is not asked for.
+/// Newton's steps from 0 approach the smallest root of the characteristic polynomial from below and never pass it. Near
+/// the root each step doubles the number of correct digits. A double smallest root (points on a line) is not needed.
 constexpr int kSteps = 10;
 
 GAUSSMAP_CLONES void solveAll(PlaneBatch& batch, double rounding) {
@@ -27,7 +27,7 @@ GAUSSMAP_CLONES void solveAll(PlaneBatch& batch, double rounding) {
     double yz = batch.products[6][i] * per_point - y * z, zz = batch.products[10][i] * per_point - z * z;
     const double trace = xx + yy + zz, scale = trace > rounding ? 1.0 / trace : 0.0;
     xx *= scale, xy *= scale, xz *= scale, yy *= scale, yz *= scale, zz *= scale;
-    // l^3 - l^2 + minors l - det = 0, for the trace is 1.
+    // l^3 - l^2 + minors l - det = 0, because the trace is 1.
     const double minors = xx * yy - xy * xy + xx * zz - xz * xz + yy * zz - yz * yz;
     const double det = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
     double least = 0.0;
@@ -36,10 +36,10 @@ GAUSSMAP_CLONES void solveAll(PlaneBatch& batch, double rounding) {
       const double slope = (3.0 * least - 2.0) * least + minors;
       least -= slope > 1e-30 ? value / slope : 0.0;
     }
-    // The other two from their sum and product.
+    // Computes the other two roots from their sum and product.
     const double sum = 1.0 - least, product = minors - least * sum, inner = sum * sum - 4.0 * product;
     const double middle = 0.5 * (sum - std::sqrt(inner > 0.0 ? inner : 0.0));
-    // Rows of A - l 1 are orthogonal to its eigenvector: the longest of their cross products.
+    // The rows of A - l I are orthogonal to the eigenvector. Takes the longest of their cross products.
     const double ax = xx - least, by = yy - least, cz = zz - least;
     const double u0 = xy * yz - xz * by, u1 = xz * xy - ax * yz, u2 = ax * by - xy * xy;
     const double v0 = xy * cz - xz * yz, v1 = xz * xz - ax * cz, v2 = ax * yz - xy * xz;
@@ -62,8 +62,8 @@ using Point = std::array<float, 4>;
 using Floats = float __attribute__((vector_size(32)));
 using Doubles = double __attribute__((vector_size(64)));  // two points
 
-/// Points of many ranges one after another, for one loop over all: a loop for each, of a length that is as good as
-/// random, would cost more than its sums.
+/// Copies the points of many ranges one after another, for one loop over all of them. One loop per range would cost
+/// more than its sums, because the lengths are almost random.
 constexpr std::size_t kTogether = 256;
 
 struct Products {
@@ -103,7 +103,7 @@ GAUSSMAP_CLONES void addAll(const Point* points, const PlaneRanges& ranges, Plan
       size &= 1;
     }
   }
-  together[size] = {about[0], about[1], about[2], 0.0f};  // adds nothing
+  together[size] = {about[0], about[1], about[2], 0.0f};  // padding that adds nothing
   addPairs(together, size, products);
   for (std::size_t axis = 0; axis < 4; ++axis) {
     sums.product[axis] = products.x[axis] + products.x[axis + 4];

@@ -7,7 +7,7 @@
 
 namespace gaussmap::detail {
 
-/// Ranges of points that one plane goes through.
+/// Ranges of points that one plane is fitted to.
 class PlaneRanges {
  public:
   static constexpr std::size_t kCapacity = 81;
@@ -20,8 +20,8 @@ class PlaneRanges {
     size_ = 0;
   }
 
-  /// Adds some. While it lives, what a next range depends on stays in registers: the ranges know of what was added once
-  /// it is gone. One at a time.
+  /// Adds ranges. It keeps the state that the next range depends on in registers, and writes it back in its destructor.
+  /// Only one Adder may exist at a time.
   class Adder {
    public:
     explicit Adder(PlaneRanges& ranges)
@@ -33,8 +33,8 @@ class PlaneRanges {
       ranges_.end_ = end_;
       ranges_.size_ = size_;
     }
-    /// Joins it to the one before if it follows that: without a branch, which would be guessed wrongly too often.
-    /// Returns its size.
+    /// Adds a range, and joins it with the one before if it follows directly. A branch would be mispredicted too often,
+    /// so there is none. Returns the size of the added range.
     std::uint32_t add(std::uint32_t from, std::uint32_t to) {
       const bool is_joined = from == end_;
       start_ = is_joined ? start_ : from;
@@ -52,32 +52,34 @@ class PlaneRanges {
   };
 
  private:
-  std::array<std::uint32_t, kCapacity + 1> first_, last_;  // from the second entry on
+  std::array<std::uint32_t, kCapacity + 1> first_, last_;  // used from the second entry on
   std::uint32_t start_ = 0, end_ = 0xFFFFFFFFu;            // of the last range
   std::size_t size_ = 0;
 };
 
-/// Sums over points, about one of them: x times x y z 1, y times the same, z times the same, and their number.
+/// The number of points, and sums over the points, relative to one of them: x times (x, y, z, 1), then y and z times
+/// the same.
 struct PlaneSums {
   std::array<double, 12> product{};
   double count = 0.0;
   static constexpr std::size_t kPadding = 8;
 };
 
-/// `points`: x y z 1 each, and kPadding more that are not counted. At least one range, none empty.
+/// Returns the sums over the points of the ranges. `points`: x y z 1 per point, followed by kPadding points that do not
+/// count. There must be at least one range, and no range may be empty.
 PlaneSums sumUp(const std::array<float, 4>* points, const PlaneRanges& ranges);
 
-/// Planes through many sets of points at once, in vector registers.
+/// Fits planes to many sets of points at once, in vector registers.
 struct PlaneBatch {
   static constexpr std::size_t kCapacity = 64;
   alignas(64) double products[12][kCapacity] = {}, counts[kCapacity] = {};
-  alignas(64) double normal[3][kCapacity], curvature[kCapacity];  ///< NaN where points span no plane
+  alignas(64) double normal[3][kCapacity], curvature[kCapacity];  ///< NaN if the points span no plane
 
   void set(std::size_t i, const PlaneSums& points) {
     for (std::size_t row = 0; row < 12; ++row) products[row][i] = points.product[row];
     counts[i] = points.count;
   }
-  /// `rounding`: variances below it are none [m^2].
+  /// Fits the planes. Variances below `rounding` [m^2] count as zero.
   void solve(double rounding);
 };
 

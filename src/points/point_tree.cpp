@@ -24,7 +24,7 @@ struct PointTree::Builder {
     nodes.push_back({{}, {}, std::uint32_t(first), std::uint32_t(last - first), 0, std::uint32_t(distinct)});
   }
 
-  /// A tree over any range: sorts it by the Morton code within its own box first.
+  /// Builds a tree over any range. First sorts the range by the Morton code within its own box.
   void sortAndSplit(std::size_t first, std::size_t last) {
     Vector<3> low = points[items[first].index], high = low;
     for (std::size_t i = first; i < last; ++i) {
@@ -33,7 +33,7 @@ struct PointTree::Builder {
     }
     const double extent = (high - low).maxCoeff();
     if (extent < kNoExtent) return addLeaf(first, last, 1);
-    const double scale = 2097151.0 / extent;  // 21 bits an axis
+    const double scale = 2097151.0 / extent;  // 21 bits per axis
     for (std::size_t i = first; i < last; ++i) {
       const Vector<3> offset = scale * (points[items[i].index] - low);
       items[i].code = mortonCode(std::uint64_t(offset.x()), std::uint64_t(offset.y()), std::uint64_t(offset.z()));
@@ -42,11 +42,11 @@ struct PointTree::Builder {
     split(first, last);
   }
 
-  /// The same over a sorted range: halves the cell at the highest bit in which its codes differ.
+  /// Builds a tree over a sorted range. Splits the range at the highest bit in which its codes differ.
   void split(std::size_t first, std::size_t last) {
     if (last - first <= kLeafSize) return addLeaf(first, last, last - first);
     std::uint64_t differing = items[first].code ^ items[last - 1].code;
-    if (differing == 0) return sortAndSplit(first, last);  // a heap too small for the code: look closer
+    if (differing == 0) return sortAndSplit(first, last);  // below the resolution of the code: sort in a smaller box
     for (int shift = 1; shift < 64; shift *= 2) differing |= differing >> shift;
     const std::uint64_t bit = differing ^ differing >> 1;
     const auto middle =
@@ -73,7 +73,7 @@ PointTree::PointTree(const std::vector<Vector<3>>& points) {
     index_[i] = builder.items[i].index;
     for (std::size_t a = 0; a < 3; ++a) axes_[a][i] = points[index_[i]](Eigen::Index(a));
   }
-  for (std::size_t n = nodes_.size(); n-- > 0;) {  // children stand behind their parents
+  for (std::size_t n = nodes_.size(); n-- > 0;) {  // children come after their parents
     Node& node = nodes_[n];
     for (std::size_t a = 0; a < 3; ++a) {
       if (node.right != 0) {

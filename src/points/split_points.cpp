@@ -21,7 +21,7 @@ using namespace detail;
 
 namespace {
 
-constexpr double kShapeOfDistance = 0.005;  // how much of the standard deviation counts where thickness does
+constexpr double kShapeOfDistance = 0.005;  // weight of the standard deviation in the error by thickness
 constexpr std::size_t kPointsPerTask = 4096;
 
 struct Item {
@@ -29,12 +29,12 @@ struct Item {
   std::uint32_t index;
 };
 
-/// Items first ... last - 1 and what decides on how they are split.
+/// The items first ... last - 1, and the values that decide how they are split.
 struct PartNode {
   std::uint32_t first = 0, last = 0;
   Eigen::Vector3d mean, axis;
   double error = 0.0;
-  std::uint32_t children = 0;  // the first of the two, 0: none
+  std::uint32_t children = 0;  // index of the first of two children, 0 = no children
 };
 
 void checkOptions(const SplitPointsOptions& options) {
@@ -53,7 +53,7 @@ class PointSplitter {
     queue_.push({nodes_[0].error, 0});
   }
 
-  /// Splits until there are so many parts; false if no more can be made.
+  /// Splits until there are this many parts. Returns false if no more splits are possible.
   bool splitTo(std::size_t parts) {
     while (this->parts() < parts) {
       if (queue_.empty()) return false;
@@ -63,10 +63,10 @@ class PointSplitter {
     }
     return true;
   }
-  /// How many parts there are.
+  /// Number of parts.
   std::size_t parts() const { return (nodes_.size() + 1) / 2; }
 
-  /// Labels by point when there were so many parts.
+  /// Returns the label of each point from the time when there were this many parts.
   std::vector<std::uint32_t> labels(std::size_t parts) const {
     std::vector<std::uint32_t> labels(items_.size());
     const std::size_t count = 2 * parts - 1;
@@ -85,7 +85,7 @@ class PointSplitter {
     node.first = first;
     node.last = last;
     const double count = last - first;
-    const Eigen::Vector3d origin = items_[first].point;  // far from zero nothing is lost
+    const Eigen::Vector3d origin = items_[first].point;  // keeps the precision far from zero
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (std::uint32_t i = first; i < last; ++i) sum += items_[i].point - origin;
     node.mean = origin + sum / count;
@@ -124,12 +124,12 @@ class PointSplitter {
   const SplitPointsOptions& options_;
   std::vector<Item> items_;
   std::vector<PartNode> nodes_;
-  std::priority_queue<std::pair<double, std::uint32_t>> queue_;  // ties: the part made last
+  std::priority_queue<std::pair<double, std::uint32_t>> queue_;  // of equal errors, the newest part comes first
 };
 
 using Points = std::vector<Vector<3>>;
 
-/// Moments of the parts that have points; `labels` are numbered anew without the others.
+/// Returns the moments of the parts that have points. Renumbers `labels` without the empty parts.
 std::vector<Gaussian<3>> momentsOf(const Points& points, std::vector<std::uint32_t>& labels, std::size_t parts) {
   std::vector<std::uint32_t> first(parts, 0), number(parts, 0), count(parts, 0);
   for (std::size_t i = labels.size(); i-- > 0;) {
@@ -175,7 +175,7 @@ std::vector<std::uint32_t> samplesOf(const Points& points, const PointParts& par
   return samples;
 }
 
-/// Below which 95 % of the distances are.
+/// Returns the 95 % quantile of the distances [m].
 double errorOf(const Points& points, const PointParts& parts, const SplitPointsOptions& options) {
   std::vector<Eigen::Vector3d> normals;
   if (options.rule == SplitRule::Shape)
@@ -200,7 +200,7 @@ PointParts partsOf(const Points& points, std::vector<std::uint32_t> labels, std:
   return parts;
 }
 
-/// Lloyd's rounds.
+/// Runs some rounds of k-means (Lloyd).
 PointParts movedToNearest(const Points& points, const PointParts& start, const SplitPointsOptions& options) {
   PointParts parts = start;
   for (int round = 0; round < options.rounds; ++round) {
@@ -217,7 +217,7 @@ PointParts movedToNearest(const Points& points, const PointParts& start, const S
   return parts;
 }
 
-/// As few parts as keep the error, max_parts if none do.
+/// Returns the smallest number of parts that keeps max_error, or max_parts parts if no number does.
 PointParts withinError(PointSplitter& splitter, const Points& points, const SplitPointsOptions& options) {
   const auto make = [&](std::size_t count) { return partsOf(points, splitter.labels(count), count, options); };
   std::size_t too_few = 0, enough = 1;
@@ -225,7 +225,7 @@ PointParts withinError(PointSplitter& splitter, const Points& points, const Spli
   while (best.error > options.max_error && enough < options.max_parts) {
     too_few = enough;
     splitter.splitTo(std::min(2 * enough, options.max_parts));
-    if (splitter.parts() == enough) return best;  // equal points only
+    if (splitter.parts() == enough) return best;  // nothing to split: the points of each part are equal
     enough = splitter.parts();
     best = make(enough);
   }

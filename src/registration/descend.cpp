@@ -13,7 +13,7 @@ DescentResult descend(const std::function<NormalEquations(const Pose&)>& at, con
   while (here.iterations < limits.max_iterations && here.equations.met > 0 && !here.converged) {
     ++here.iterations;
     NormalEquations::Matrix6 damped = here.equations.information;
-    const double least = 1e-9 * damped.diagonal().maxCoeff();  // directions that nothing tells stay
+    const double least = 1e-9 * damped.diagonal().maxCoeff();  // directions without information do not move
     for (int axis = 0; axis < 6; ++axis) damped(axis, axis) += damping * damped(axis, axis) + least;
     const NormalEquations::Vector6 by = -damped.ldlt().solve(here.equations.gradient);
     const Pose next = moved(here.pose, by);
@@ -25,7 +25,7 @@ DescentResult descend(const std::function<NormalEquations(const Pose&)>& at, con
       damping = std::max(1e-9, 0.1 * damping);
     } else {
       damping = std::max(1e-3, 10.0 * damping);
-      if (damping > 1e6) here.converged = true;  // no way down from here
+      if (damping > 1e6) here.converged = true;  // no step lowers the cost
     }
   }
   return here;

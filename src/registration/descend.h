@@ -10,18 +10,18 @@ namespace gaussmap::detail {
 
 struct DescentLimits {
   int max_iterations;
-  double translation;  ///< done when an iteration moves less than this [m] ...
+  double translation;  ///< converged when an iteration moves less than this [m] ...
   double rotation;     ///< ... and turns less than this [rad]
 };
 
 struct DescentResult {
   Pose pose;
-  NormalEquations equations;  ///< there
+  NormalEquations equations;  ///< at `pose`
   int iterations = 0;
   bool converged = false;
 };
 
-/// Damped Gauss-Newton (Levenberg, Marquardt) from a pose downwards: a step that raises the cost is not taken, but
+/// Minimises the cost by damped Gauss-Newton (Levenberg, Marquardt). A step that raises the cost is rejected and
 /// tried shorter. `at` gives the equations at a pose.
 DescentResult descend(const std::function<NormalEquations(const Pose&)>& at, const Pose& start,
                       const DescentLimits& limits);

@@ -9,12 +9,13 @@
 namespace gaussmap::detail {
 namespace {
 
-// What the axes other than the thinnest tell at the finest scale: scan lines on a plane look thin along two axes, and
+// Weight of the axes other than the thinnest at the finest scale. Scan lines on a plane look thin along two axes, but
 // they move with the sensor.
 constexpr double kLine = 0.03;
-constexpr double kFilled = 0.6;  // of the variance of a full cell: more is full, counted with few points
+// A cell counts as full from this share of a full cell's variance on, because a few points seldom reach all of it.
+constexpr double kFilled = 0.6;
 
-/// Without the call that comparing arrays makes.
+/// Compares two keys inline. The comparison of two std::array calls a function.
 bool isSame(const CellKey<3>& a, const CellKey<3>& b) {
   return ((a[0] ^ b[0]) | (a[1] ^ b[1]) | (a[2] ^ b[2])) == 0;
 }
@@ -54,7 +55,8 @@ void MapNeighbours::workOut(std::uint32_t i) {
   const Candidate& candidate = candidates_[i];
   const PrincipalAxes<3> axes = principalAxes(Gaussian<3>{Vector<3>::Zero(), cov_[i], 1.0});
   MapGaussian made{{candidate.x, candidate.y, candidate.z}, axes.directions, axes.variances, {}};
-  // A uniform density from side to side has a variance of side^2 / 12: such an axis ends where the cell does.
+  // A uniform density over the whole cell has a variance of side^2 / 12. The end of such an axis is the end of the
+  // cell, not that of a surface.
   const double whole = map_.grid().side(scale_) * map_.grid().side(scale_) / 12.0;
   for (int axis = 0; axis < 3; ++axis) {
     const double open = std::max(0.0, 1.0 - made.variances[axis] / (kFilled * whole));
@@ -64,7 +66,7 @@ void MapNeighbours::workOut(std::uint32_t i) {
   worked_out_.push_back(made);
 }
 
-/// Those below a parent come all at once: neighbours are asked for next.
+/// Enters all children of a parent at once, because the neighbours of a cell are needed next.
 void MapNeighbours::enterCellsUnder(const CellKey<3>& parent) {
   const std::uint32_t hash = KeyIndex::hashOf(parent);
   if (parent_index_.find(hash, [&](std::uint32_t i) { return isSame(parents_[i], parent); }) != kNone) return;
@@ -81,7 +83,7 @@ void MapNeighbours::enterCellsUnder(const CellKey<3>& parent) {
 }
 
 std::uint32_t MapNeighbours::findList(const Vector<3>& point) {
-  CellKey<3> low;  // of the eight cells, the one of lowest coordinates
+  CellKey<3> low;  // of the eight cells, the one with the lowest coordinates
   try {
     low = map_.grid().keyOf(point + origin_ - Vector<3>::Constant(half_side_), scale_);
   } catch (const std::out_of_range&) {

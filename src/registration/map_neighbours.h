@@ -9,55 +9,56 @@
 
 namespace gaussmap::detail {
 
-/// A Gaussian of the map, as the scan meets it.
+/// A Gaussian of the map, prepared for the residuals.
 struct MapGaussian {
-  Vector<3> mean;        ///< [m], about the origin of the registration
-  Matrix<3> directions;  ///< unit axes, one a column
-  Vector<3> variances;   ///< along them [m^2], without any blur
-  Vector<3> tells;       ///< 1: a thin axis; 0: it fills its cell, a shift along it says nothing
+  Vector<3> mean;        ///< [m], relative to the origin of the registration
+  Matrix<3> directions;  ///< unit axes, one per column
+  Vector<3> variances;   ///< along the axes [m^2], without blur
+  Vector<3> tells;       ///< weight per axis: 1 = thin; 0 = fills its cell, a shift along it is unobservable
 };
 
-/// The Gaussians of one scale around a place: of the eight cells that meet at the corner nearest to it. Everything is
-/// looked up or worked out once, when it is first met.
+/// Finds the Gaussians of one scale around a point: those of the eight cells that meet at the cell corner nearest to
+/// it. Looks up and computes everything once, when it is first needed.
 class MapNeighbours {
  public:
   MapNeighbours(const GaussianMap<3>& map, int scale, const Vector<3>& origin);
 
-  /// Widens all Gaussians by `blur` [m] in the search of the nearest.
+  /// Widens all Gaussians by the standard deviation `blur` [m] for nearest().
   void setBlur(double blur);
   double blur() const { return blur_; }
 
-  /// The list of the cells around a point [m, about the origin], made if need be. Not thread-safe. kNone beyond all
-  /// cells. `hint`: a list that is right if the point has not moved far, or kNone; within the rounding of the
-  /// lattice either list of a border may come.
+  /// Returns the number of the list for a point [m, relative to the origin], and makes the list if necessary. Returns
+  /// kNone if the point is out of the range of the grid. Not thread-safe. `hint`: the last list of the point, which is
+  /// used again if the point has not moved far, or kNone. A point on a border may get the list of either side.
   std::uint32_t listAt(const Vector<3>& point, std::uint32_t hint = kNone) {
     if (hint != kNone && (point - lists_[hint].corner).cwiseAbs().maxCoeff() <= half_side_) return hint;
     return findList(point);
   }
-  /// The nearest Gaussian in a list by the Mahalanobis distance, ties to the first; kNone in an empty one.
+  /// Returns the Gaussian of a list with the smallest Mahalanobis distance, the first one of equals. Returns kNone if
+  /// the list is empty.
   std::uint32_t nearest(std::uint32_t list, const Vector<3>& point) const;
-  /// Works out Gaussian `i`. Not thread-safe.
+  /// Computes the MapGaussian of Gaussian `i` if necessary. Not thread-safe.
   void prepare(std::uint32_t i) {
     if (place_[i] == kNone) workOut(i);
   }
-  /// A prepared one.
+  /// Returns a Gaussian for which prepare() was called.
   const MapGaussian& operator[](std::uint32_t i) const { return worked_out_[place_[i]]; }
 
   static constexpr std::uint32_t kNone = KeyIndex::kNone;
 
  private:
   struct Candidate {
-    double x, y, z;                 // the mean, about the origin
-    double xx, yy, zz, xy, xz, yz;  // the inverse of the widened covariance; twice what is not on its diagonal
+    double x, y, z;                 // mean, relative to the origin [m]
+    double xx, yy, zz, xy, xz, yz;  // inverse of the widened covariance, with doubled off-diagonal elements
   };
   struct List {
-    Vector<3> corner;         // where its cells meet, about the origin
+    Vector<3> corner;         // where its cells meet, relative to the origin [m]
     std::size_t first, last;  // in members_
   };
   struct Cell {
     CellKey<3> key;
     std::size_t index;            // in the map
-    std::uint32_t first = kNone;  // of its candidates, once there are some
+    std::uint32_t first = kNone;  // index of its first candidate, kNone before addCandidates()
   };
 
   std::uint32_t findList(const Vector<3>& point);
@@ -73,13 +74,13 @@ class MapNeighbours {
   const double half_side_;
   double blur_ = 0.0;
   KeyIndex cell_index_, parent_index_, list_index_;
-  std::vector<Cell> cells_;  // of the map: all below the parents, or, at the coarsest scale, those that were found
-  std::vector<CellKey<3>> parents_, low_;  // entered so far; of the lists' cells, those of lowest coordinates
+  std::vector<Cell> cells_;  // known cells: all children of parents_, or at the coarsest scale those that were found
+  std::vector<CellKey<3>> parents_, low_;  // low_: per list, the cell with the lowest coordinates
   std::vector<List> lists_;
   std::vector<std::uint32_t> members_;  // candidates, list after list
   std::vector<Candidate> candidates_;
   std::vector<Matrix<3>> cov_;        // of the candidates
-  std::vector<std::uint32_t> place_;  // of the candidates in worked_out_
+  std::vector<std::uint32_t> place_;  // index of the candidates in worked_out_
   std::vector<MapGaussian> worked_out_;
 };
 

@@ -8,7 +8,7 @@
 
 namespace gaussmap::detail {
 
-/// Cost at a pose and its derivatives by (x, y, z, rotation vector about the sensor), map axes:
+/// The cost at a pose and its derivatives by (x, y, z [m], rotation vector about the sensor [rad]), map axes:
 /// cost = sum_i rho(d_i^2), rho(d^2) = d^2 / (1 + d^2 / k^2).
 struct NormalEquations {
   using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -16,15 +16,15 @@ struct NormalEquations {
 
   Matrix6 information = Matrix6::Zero();  ///< J' W J
   Vector6 gradient = Vector6::Zero();     ///< half the derivative of the cost
-  double cost = 0.0;                      ///< Gaussians that meet nothing count k^2
-  std::size_t met = 0;                    ///< that meet a Gaussian of the map
+  double cost = 0.0;                      ///< a Gaussian of the scan without a partner in the map adds k^2
+  std::size_t met = 0;                    ///< Gaussians of the scan with a partner in the map
   std::size_t near = 0;                   ///< of these, within 3 standard deviations
-  double near_squared = 0.0;              ///< sum of their squared distances
+  double near_squared = 0.0;              ///< sum of the squared Mahalanobis distances of these
 
   NormalEquations& operator+=(const NormalEquations& other);
 };
 
-/// The pose moved by such a six-vector.
+/// Returns the pose moved by a vector of these six parameters.
 Pose moved(const Pose& pose, const NormalEquations::Vector6& by);
 
 }  // namespace gaussmap::detail

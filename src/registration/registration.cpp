@@ -38,7 +38,7 @@ void check(const GaussianMap<3>& map, const Pose& guess, const RegistrationOptio
   require(options.threads >= 0, "threads", options.threads, "must be at least 1 (0 = all)");
 }
 
-constexpr int kCoarse = 4;  // so many times as wide are the cells of the scan at the coarse scales of the map
+constexpr int kCoarse = 4;  // factor by which the scan's cells are wider at the coarse scales of the map
 
 /// A step from coarse to fine.
 struct Step {
@@ -49,20 +49,21 @@ struct Step {
 std::vector<Step> stepsOf(const GaussianMap<3>& map) {
   std::vector<Step> steps;
   for (int scale = map.scales() - 1; scale >= 0; --scale) {
-    if (map.cellCount(scale) == 0) continue;  // of a compressed map
+    if (map.cellCount(scale) == 0) continue;  // possible in a compressed map
     const double side = map.grid().side(scale);
     for (const double part : {0.3, 0.1}) steps.push_back({scale, part * side});
   }
   return steps;
 }
 
-/// Before the last step, a hundredth of the blur is near enough.
+/// Returns the limits of a step. Before the last step, a hundredth of the blur is accurate enough.
 DescentLimits limitsOf(const Step& step, bool last, const RegistrationOptions& options) {
   const double translation = std::max(options.translation, last ? 0.0 : 0.01 * step.blur);
   return {options.max_iterations, translation, translation / options.translation * options.rotation};
 }
 
-/// Which direction the information tells least about; rotations times the range, so that they compare with metres.
+/// Computes the covariance of the pose, and finds the direction with the least information. Rotations are multiplied by
+/// the range, to compare them with metres.
 void judge(const NormalEquations& sums, double range, const RegistrationOptions& options, RegistrationResult& result) {
   if (sums.met == 0) return;
   Vector6 unit = Vector6::Ones();
@@ -70,7 +71,7 @@ void judge(const NormalEquations& sums, double range, const RegistrationOptions&
   const Matrix6 scaled = unit.asDiagonal() * sums.information * unit.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Matrix6> solver(scaled);
   const Vector6& told = solver.eigenvalues();
-  if (!(told[5] > 0.0)) return;  // what it met fills its cells
+  if (!(told[5] > 0.0)) return;  // all partners in the map fill their cells
   result.degenerate = !(told[0] > options.degenerate * told[5]);
   result.least_observable = solver.eigenvectors().col(0);
   const Vector6 variances = told.cwiseMax(1e-12 * told[5]).cwiseInverse();
@@ -86,7 +87,7 @@ RegistrationResult align(const GaussianMap<3>& source, const GaussianMap<3>& map
   const std::vector<Gaussian<3>> fine = gaussiansOf(source, side, options.max_gaussians),
                                  coarse = gaussiansOf(source, kCoarse * side, options.max_gaussians);
   if (fine.empty()) return result;
-  const Vector<3> origin = guess.translation;  // sums are taken about it: nothing is lost far away
+  const Vector<3> origin = guess.translation;  // all sums are relative to it, to keep their precision far from zero
   Pose pose = result.pose;
   pose.translation.setZero();
   NormalEquations last;

@@ -8,14 +8,14 @@ namespace {
 
 using Lanes = ResidualBatch::Lanes;
 constexpr std::size_t kLanes = ResidualBatch::kLanes;
-constexpr double kNear = 9.0;  // squared standard deviations
+constexpr double kNear = 9.0;  // 3 standard deviations, squared
 
 struct Motion {
   double rotation[3][3], translation[3];
   double blur_squared, per_squared_kernel;
 };
 
-/// Matrices by their upper triangles, row by row.
+/// Sums of the normal equations. Symmetric matrices are stored as their upper triangles, row by row.
 struct Sums {
   Lanes shifts[6], shift_turns[9], turns[6];  // of J' W J
   Lanes shift[3], turn[3];                    // of the gradient
@@ -53,8 +53,8 @@ GAUSSMAP_CLONES void addAll(const ResidualBatch::Columns& in, std::size_t blocks
     const Lanes share = one / (one + squared * motion.per_squared_kernel), weight = share * share;
     mxx *= weight, mxy *= weight, mxz *= weight, myy *= weight, myz *= weight, mzz *= weight;
     gx *= weight, gy *= weight, gz *= weight;
-    // A turn about u moves the mean by u x arm: of B, the rows are arm x (row of M), and of the last block the columns
-    // arm x (column of B).
+    // A rotation by the vector u moves the mean by u x arm. So a row of the block B (shifts, turns) is arm x (row of
+    // M), and a column of the block (turns, turns) is arm x (column of B).
     const Lanes bxx = ay * mxz - az * mxy, bxy = az * mxx - ax * mxz, bxz = ax * mxy - ay * mxx;
     const Lanes byx = ay * myz - az * myy, byy = az * mxy - ax * myz, byz = ax * myy - ay * mxy;
     const Lanes bzx = ay * mzz - az * myz, bzy = az * mxz - ax * mzz, bzz = ax * myz - ay * mxz;

@@ -10,17 +10,19 @@
 
 namespace gaussmap::detail {
 
-/// Gaussians of a scan beside those of the map that they meet, in columns for vector registers. Each has the residual
-/// d^2 = sum over the axes a of the map's Gaussian, tells_a (a' r)^2 / (variance_a + blur^2 + a' R S R' a), where
-/// r = R m + t - mean of the map, m and S of the scan [m, about the sensor].
+/// Pairs of a Gaussian of a scan and its partner in the map, in columns for vector registers. A pair has the residual
+/// d^2 = sum over a: tells_a (a' r)^2 / (variance_a + blur^2 + a' R S R' a), where
+/// a are the axes of the map's Gaussian, r = R m + t - mean of the map's Gaussian, and m and S are the mean and the
+/// covariance of the scan's Gaussian [m, relative to the sensor].
 class ResidualBatch {
  public:
   static constexpr std::size_t kCapacity = 64;
 
   bool isFull() const { return size_ == kCapacity; }
-  /// Only where it is not full.
+  /// Adds a pair. The batch must not be full.
   void add(const Gaussian<3>& gaussian, const MapGaussian& target);
-  /// The normal equations of all, which are then forgotten; rotation R and translation t [m], blur^2 [m^2], kernel k.
+  /// Returns the normal equations of all pairs, and removes the pairs.
+  /// Rotation R, translation t [m], blur^2 [m^2], kernel k.
   NormalEquations sumUp(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translation, double blur_squared,
                         double kernel);
 
@@ -33,7 +35,7 @@ class ResidualBatch {
   };
 
  private:
-  Columns columns_;  // as far as size_
+  Columns columns_;  // filled up to size_
   std::size_t size_ = 0;
 };
 

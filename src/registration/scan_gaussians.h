@@ -9,8 +9,8 @@
 
 namespace gaussmap::detail {
 
-/// The Gaussians that are moved onto the map: those of the scale whose cells are nearest to a side [m], at most `most`,
-/// evenly chosen.
+/// Returns the Gaussians to register: those of the scale whose cells have the side nearest to `side` [m]. It chooses at
+/// most `most` of them evenly.
 std::vector<Gaussian<3>> gaussiansOf(const GaussianMap<3>& source, double side, std::size_t most);
 
 }  // namespace gaussmap::detail

@@ -9,7 +9,7 @@
 namespace gaussmap::detail {
 namespace {
 
-constexpr std::size_t kPart = 256;  // Gaussians that are summed by themselves: the order of the sums is fixed
+constexpr std::size_t kPart = 256;  // Gaussians per partial sum, independent of threads: the order of the sums is fixed
 
 }  // namespace
 

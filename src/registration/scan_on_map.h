@@ -10,14 +10,14 @@
 
 namespace gaussmap::detail {
 
-/// The Gaussians of a scan, each beside the nearest one of a map wherever the scan is put. Refers to what it is made
-/// of.
+/// Pairs the Gaussians of a scan with the nearest ones of a map, for any pose of the scan. Keeps references to
+/// the scan and to the neighbours.
 class ScanOnMap {
  public:
   ScanOnMap(const std::vector<Gaussian<3>>& scan, MapNeighbours& near, double kernel, int threads)
       : scan_(scan), near_(near), kernel_(kernel), threads_(threads), lists_(scan.size(), MapNeighbours::kNone) {}
 
-  /// The normal equations at a pose (about the origin of the neighbours).
+  /// Returns the normal equations at a pose (relative to the origin of the neighbours).
   NormalEquations linearise(const Pose& pose);
 
  private:
@@ -25,7 +25,7 @@ class ScanOnMap {
   MapNeighbours& near_;
   const double kernel_;
   const int threads_;
-  std::vector<std::uint32_t> lists_;  // where the Gaussians were last: most of them stay there
+  std::vector<std::uint32_t> lists_;  // last list of each Gaussian; most Gaussians stay in it
 };
 
 }  // namespace gaussmap::detail

@@ -7,11 +7,13 @@
 namespace gaussmap::detail {
 namespace {
 
-constexpr double kTilt = 0.77;  // cosine of the greatest angle between a surface and the segment that it belongs to ...
-constexpr double kShort = 0.25;     // ... for pieces of surface that are longer than this [m] ...
-constexpr double kTiltShort = 0.5;  // ... and for shorter ones, whose directions are less certain
+// A straight segment accepts a piece of surface only if the cosine of the angle between both is at least kTilt.
+// Pieces shorter than kShort have less certain directions, so kTiltShort is their limit.
+constexpr double kTilt = 0.77;
+constexpr double kShort = 0.25;  // [m]
+constexpr double kTiltShort = 0.5;
 
-/// `piece`: of straightPieces().
+/// Returns the number of the segment that a beam's end belongs to, or kNone. `piece`: its result of straightPieces().
 int segmentOfHit(const Vector<2>& hit, const Vector<2>& sensor, const Vector<2>& piece, const SegmentStore& store,
                  double min_half_width) {
   const double length = piece.norm(), tilt = length < kShort ? kTiltShort : kTilt;
@@ -22,7 +24,7 @@ int segmentOfHit(const Vector<2>& hit, const Vector<2>& sensor, const Vector<2>&
     if (segment.line.offset(sensor) <= 0.0) continue;  // seen from behind
     const double distance = segment.squaredDistance(hit);
     if (distance >= least || !store.polygon(segment).contains(hit)) continue;
-    // A straight segment takes no part of another surface; a coarse segment takes everything.
+    // A straight segment (3 sigma_n <= min_half_width) refuses surfaces of another direction. A coarse one does not.
     const bool straight = 9.0 * segment.line.across <= min_half_width * min_half_width;
     if (straight && segment.line.direction.dot(piece) < tilt * length && !segment.degenerate()) continue;
     least = distance;

@@ -9,9 +9,9 @@
 
 namespace gaussmap::detail {
 
-/// For every beam the number of the segment that it belongs to, kNone if it belongs to none: the nearest segment whose
-/// polygon contains the end of the beam, that is seen from its free side, and whose direction fits the surface there.
-/// Leal 2000 sec. 4.1.
+/// Returns per beam the number of the segment that it belongs to, or kNone. This is the nearest segment that meets
+/// three conditions: its polygon contains the end of the beam, the sensor is on its free side, and its direction fits
+/// the surface there. Leal 2000 sec. 4.1.
 std::vector<int> associate(const ScanBeams& beams, const std::vector<BeamRun>& runs, const SegmentStore& store,
                            const SegmentFitterOptions& options);
 

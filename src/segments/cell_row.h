@@ -9,13 +9,13 @@
 
 namespace gaussmap::detail {
 
-/// A short stretch along a segment.
+/// A short section of a segment.
 struct SegmentCell {
-  LineMoments hits;      ///< of the observations in it
-  double crossed = 0.0;  ///< rays that went through it
+  LineMoments hits;      ///< moments of the observations in it
+  double crossed = 0.0;  ///< rays that passed through it
 };
 
-/// Cells of one length side by side along an axis: where on a segment its evidence lies.
+/// A row of cells of equal length along an axis. It stores the evidence of a segment by position along it.
 class CellRow {
  public:
   CellRow() = default;
@@ -27,21 +27,22 @@ class CellRow {
   double position(const Vector<2>& point) const { return axis_.dot(point - origin_); }
   int index(const Vector<2>& point) const { return static_cast<int>(std::floor(position(point) / size_)); }
   int first() const { return first_; }
-  int last() const { return first_ + static_cast<int>(cells_.size()); }  ///< behind the last
+  int last() const { return first_ + static_cast<int>(cells_.size()); }  ///< index after the last cell
   bool empty() const { return cells_.empty(); }
   const std::vector<SegmentCell>& cells() const { return cells_; }
   std::vector<SegmentCell>& cells() { return cells_; }
 
-  /// The cell with this index, made if there is none.
+  /// Returns the cell with this index. Extends the row if necessary.
   SegmentCell& at(int index);
   void add(const Vector<2>& point, double weight) { at(index(point)).hits.add(point, weight); }
-  /// Puts what is in the other row's cells into the cells where their means lie.
+  /// Adds the cells of the other row. Each is added to the cell of this row that contains its mean, or its middle if it
+  /// has no hits.
   void absorb(const CellRow& other);
-  /// The same evidence along another axis.
+  /// Returns the same evidence along another axis.
   CellRow turned(const Vector<2>& origin, const Vector<2>& axis) const;
-  /// Cells [first, last) of cells() alone, without empty ones at the ends.
+  /// Returns the cells [first, last) of cells() as a row, without empty cells at its ends.
   CellRow slice(std::size_t first, std::size_t last) const;
-  /// Drops cells without observations at both ends.
+  /// Removes cells without observations from both ends.
   void trim();
   LineMoments total() const;
   std::size_t bytes() const { return cells_.capacity() * sizeof(SegmentCell); }

@@ -8,15 +8,15 @@
 namespace gaussmap::detail {
 namespace {
 
-constexpr double kGrown = 1.1;             // a segment is decided on again when its evidence has grown by this factor
-constexpr double kPartnerCosine = 0.9;     // of the angle between segments that are not linked, to be merged, at least
-constexpr std::size_t kMaxDecisions = 10;  // per segment and scan: votes that contradict each other would never end
+constexpr double kGrown = 1.1;          // the votes on a segment are repeated when its weight has grown by this factor
+constexpr double kPartnerCosine = 0.9;  // minimum cosine of the angle between merge candidates that are not linked
+constexpr std::size_t kMaxDecisions = 10;  // per segment and scan, because contradictory votes would never end
 
-/// Number of the first cell behind a hole without evidence longer than `gap`; 0 if there is none.
+/// Returns the number of the first cell after a hole without evidence that is longer than `gap` [m]; 0 without a hole.
 std::size_t firstHole(const CellRow& row, double gap) {
   const std::size_t needed = static_cast<std::size_t>(std::ceil(gap / row.size())) + 2;
   std::size_t empty = 0;
-  bool begun = false;  // cells without evidence before the first one with some are no hole
+  bool begun = false;  // empty cells before the first evidence are not a hole
   for (std::size_t i = 0; i < row.cells().size(); ++i) {
     if (row.cells()[i].hits.n <= 0.0) {
       ++empty;
@@ -29,11 +29,11 @@ std::size_t firstHole(const CellRow& row, double gap) {
   return 0;
 }
 
-/// The segments that a merge is considered with: the neighbours in the chain, and what lies alongside.
+/// Returns the candidates for a merge: the neighbours in the chain, and nearby segments of similar direction.
 std::vector<int> mergePartners(int id, double gap, const SegmentStore& store) {
   const LiveSegment& segment = store[id];
   std::vector<int> partners;
-  // The faces of a thin wall, linked around its end, look away from each other.
+  // Excludes the two faces of a thin wall: they can be linked around its end, but have opposite directions.
   const auto linked = [&](int other, const Vector<2>& own_end, const Vector<2>& other_end) {
     if ((own_end - other_end).norm() > gap || store[other].line.direction.dot(segment.line.direction) <= 0.0) return;
     partners.push_back(other);

@@ -14,9 +14,9 @@ struct DecisionCounts {
   std::size_t merges = 0;
 };
 
-/// Decides on each of these segments, and on those that result, whether it is split, merged or left alone: the highest
-/// utility wins, Leal 2000 eq. [3]. Segments with a hole longer than `gap` [m] are split there in any case. A segment
-/// whose evidence has hardly grown since the last decision is left alone.
+/// Decides for each of these segments, and for those that result, whether to split it, merge it or do nothing. The
+/// highest utility wins, Leal 2000 eq. [3]. A segment with a hole longer than `gap` [m] is always split there. A
+/// segment whose evidence has hardly grown since its last decision is skipped.
 DecisionCounts decide(const std::vector<int>& touched, const SegmentVotes& votes, double gap, SegmentStore& store);
 
 }  // namespace gaussmap::detail

@@ -10,8 +10,8 @@
 namespace gaussmap::detail {
 namespace {
 
-constexpr double kLongest = 10.0;  // a segment keeps particles for at most so many minimum lengths
-constexpr double kBin = 0.25;      // length of the stretches of ParticleLimit::Bins [m]
+constexpr double kLongest = 10.0;  // the limit of particles grows with the length only up to this many times min_length
+constexpr double kBin = 0.25;      // length of the bins of ParticleLimit::Bins [m]
 
 class MomentCells : public EvidenceKeeper {
  public:
@@ -46,7 +46,7 @@ class ParticleSets : public EvidenceKeeper {
   }
 
  private:
-  /// Resampling without replacement from a uniform distribution over the particles, Leal 2000 sec. 4.4.
+  /// Keeps a uniform random sample of the particles, drawn without replacement, Leal 2000 sec. 4.4.
   void limitSegment(double length, Random& random, std::vector<Particle>& particles) const {
     const double limit = std::max(options_.per_metre * std::min(length, longest_), double(options_.samples));
     while (static_cast<double>(particles.size()) > limit) {
@@ -55,7 +55,7 @@ class ParticleSets : public EvidenceKeeper {
     }
   }
 
-  /// The same within each bin.
+  /// Like limitSegment(), but for each bin by itself.
   void limitBins(Random& random, SegmentEvidence& evidence) const {
     const double per_bin = options_.per_metre * kBin;
     const std::size_t limit = static_cast<std::size_t>(std::max(per_bin, double(options_.samples)));
@@ -69,7 +69,7 @@ class ParticleSets : public EvidenceKeeper {
       first = std::min(first, bins.back());
       last = std::max(last, bins.back());
     }
-    // A counting sort, then the places of the first `limit` of each bin.
+    // Sorts the particles by bin (counting sort), then keeps at most `limit` random ones per bin.
     std::vector<std::size_t> ends(static_cast<std::size_t>(std::int64_t{last} - first + 2), 0);
     for (const int bin : bins) ++ends[static_cast<std::size_t>(std::int64_t{bin} - first + 1)];
     for (std::size_t i = 1; i < ends.size(); ++i) ends[i] += ends[i - 1];

@@ -12,24 +12,24 @@ namespace gaussmap::detail {
 
 using Particle = Eigen::Matrix<float, 2, 1, Eigen::DontAlign>;
 
-/// The observations of a segment, in one of two forms.
+/// The observations of a segment, in the form of its EvidencePolicy.
 struct SegmentEvidence {
-  CellRow row;                      ///< where it lies; all there is with EvidencePolicy::MomentCells
-  std::vector<Particle> particles;  ///< with EvidencePolicy::ParticleSets: what `row` is made of
+  CellRow row;                      ///< moments per cell along the segment
+  std::vector<Particle> particles;  ///< EvidencePolicy::ParticleSets only: `row` contains their moments
 
-  /// The evidence in the cells [first, last) of the row.
+  /// Returns the evidence in the cells [first, last) of the row.
   SegmentEvidence slice(std::size_t first, std::size_t last) const;
   void absorb(const SegmentEvidence& other);
   std::size_t bytes() const { return row.bytes() + particles.capacity() * sizeof(Particle); }
 };
 
-/// How observations become evidence.
+/// Converts observations to evidence.
 class EvidenceKeeper {
  public:
   virtual ~EvidenceKeeper() = default;
   virtual void add(const std::vector<ObservationPoint>& observation, SegmentEvidence& evidence) const = 0;
-  /// After all observations of a scan: forgets evidence beyond the limit for a segment of this length [m]. `number` is
-  /// different for every call.
+  /// Call it after all observations of a scan. Drops the evidence beyond the limit for a segment of this length [m].
+  /// `number` must be different for every call; it seeds the random choice.
   virtual void settle(double length, std::uint64_t number, SegmentEvidence& evidence) const = 0;
 };
 

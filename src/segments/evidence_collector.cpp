@@ -25,7 +25,7 @@ void EvidenceCollector::take(const ScanBeams& beams, std::size_t beam, LiveSegme
   segment.beams.n += 1.0;
   segment.beams.t += t;
   segment.beams.tt += t * t;
-  // Across the line: the range's error with the beam's own share of the normal, the bearing's with the rest.
+  // Variance across the line: the range error acts along the beam, the bearing error at right angles to it.
   const double sine = segment.line.normal().dot(back), bearing = range * noise_.bearing;
   segment.beams.variance += sine * sine * noise_.range * noise_.range + (1.0 - sine * sine) * bearing * bearing;
 }

@@ -12,7 +12,7 @@ double ExplainedScore::explained(const LineMoments& hits, const LineFit& line) c
 }
 
 double ExplainedScore::costOfCell(const std::vector<SegmentCell>& cells, std::size_t i) const {
-  // A single empty cell is no hole: what moves from one row to another may fall to its neighbours.
+  // A single empty cell is not a hole: when evidence moves to another row, the neighbours may get a cell's hits.
   const auto empty = [&](std::size_t k) { return k < cells.size() && cells[k].hits.n <= 0.0; };
   const bool hole = empty(i) && ((i > 0 && empty(i - 1)) || empty(i + 1));
   return cell_cost + crossing_cost * cells[i].crossed + (hole ? hole_cost : 0.0);
@@ -34,8 +34,8 @@ double ExplainedScore::scoreOf(const LiveSegment& segment) const {
 
 std::vector<ScoredRange> bestRanges(const CellRow& row, const LineFit& line, const ExplainedScore& score) {
   const std::vector<SegmentCell>& cells = row.cells();
-  // For the cells before number i: the highest score of all choices, and of those that keep cell i - 1, with the first
-  // cell of the range that cell i - 1 is in.
+  // For the cells before number i: best[i] is the highest score of all choices, kept[i] the highest score of the
+  // choices that keep cell i - 1. In the latter, begun[i] is the first cell of the range that contains cell i - 1.
   std::vector<double> best(cells.size() + 1, 0.0), kept(cells.size() + 1, -std::numeric_limits<double>::infinity());
   std::vector<std::size_t> begun(cells.size() + 1, 0);
   for (std::size_t i = 0; i < cells.size(); ++i) {

@@ -10,7 +10,7 @@
 namespace gaussmap::detail {
 namespace {
 
-constexpr double kCovered = 0.1;  // distance within which a beam's end counts as covered [m]
+constexpr double kCovered = 0.1;  // a beam's end is covered if a segment is at most this far from it [m]
 constexpr int kPruneEvery = 10;   // scans
 
 }  // namespace
@@ -21,7 +21,7 @@ SegmentStatistics SegmentFitterState::add(const LaserScan& original) {
   const ScanBeams beams(original, votes.origin(), observations);
   SegmentStatistics statistics;
 
-  // Beams are associated with the segments of the map as it was; the others become new segments.
+  // Associates beams with the existing segments. The other beams become new segments.
   const std::vector<BeamRun> runs = findRuns(beams, options.gap);
   std::vector<int> owners = associate(beams, runs, store, options), touched;
   for (const BeamRun& run : runs) {

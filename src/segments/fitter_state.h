@@ -16,18 +16,18 @@
 
 namespace gaussmap::detail {
 
-/// What a SegmentFitter holds, and the steps of add() in their order.
+/// The state of a SegmentFitter, and the steps of its add() in their order.
 struct SegmentFitterState {
   SegmentFitterState(const SegmentFitterOptions& given, std::shared_ptr<SegmentUtility> utility)
       : options(given), votes(std::move(utility)), collector(given), store(given) {}
 
   SegmentStatistics add(const LaserScan& scan);
-  /// Links segments that neighbouring beams end on.
+  /// Links two segments if neighbouring beams end on them and their ends are near each other.
   void linkNeighbours(const std::vector<BeamRun>& runs, const std::vector<int>& owners);
   void describe(const ScanBeams& beams, SegmentStatistics& statistics) const;
 
   SegmentFitterOptions options;
-  SegmentVotes votes;  ///< its origin: the first sensor position in whole metres; all sums are taken about it
+  SegmentVotes votes;  ///< its origin is the first sensor position in whole metres; all sums are relative to it
   EvidenceCollector collector;
   SegmentStore store;
   Views views;

@@ -10,11 +10,11 @@
 namespace gaussmap::detail {
 namespace {
 
-constexpr double kBehind = 0.2;    // a ray crosses what it passes by more than this [m]
-constexpr double kGrazing = 0.2;   // sine of the angle between ray and segment from which on the crossing is certain
-constexpr double kEdge = 0.05;     // nor are ends certain [m]
-constexpr double kPlace = 0.5;     // views of one place [m] ...
-constexpr double kHeading = 0.25;  // ... and direction [rad] are one
+constexpr double kBehind = 0.2;    // a ray crosses a segment if it ends at least this far behind it [m]
+constexpr double kGrazing = 0.2;   // minimum sine of the angle between ray and segment: below, a crossing is uncertain
+constexpr double kEdge = 0.05;     // length at both ends of a segment where a crossing is uncertain [m]
+constexpr double kPlace = 0.5;     // Views keeps one scan per square of this side [m] ...
+constexpr double kHeading = 0.25;  // ... and per interval of heading of this size [rad]
 
 }  // namespace
 
@@ -38,7 +38,7 @@ void countCrossings(const ScanBeams& beams, double weight, std::deque<LiveSegmen
     const Vector<2>& along = segment.line.direction;
     const Vector<2> middle = segment.line.center + 0.5 * (segment.begin + segment.end) * along - sensor;
     if (middle.squaredNorm() > reach * reach) continue;
-    // The beams between the bearings of its ends, which may be given in another turn.
+    // Tests the beams between the bearings of its ends. The bearings of the scan may differ by a full turn.
     const Vector<2> a = middle - half * along, b = middle + half * along;
     const double first = std::atan2(c * a.y() - s * a.x(), c * a.x() + s * a.y()),
                  turn = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
@@ -101,7 +101,7 @@ std::size_t Views::bytes() const {
   std::size_t sum = 0;
   const std::vector<float>* last = nullptr;
   for (const auto& entry : views_) {
-    constexpr std::size_t kNode = 32;  // of the tree
+    constexpr std::size_t kNode = 32;  // bytes of a node of std::map, about
     sum += sizeof(entry) + kNode + entry.second.ranges.capacity() * sizeof(float);
     if (entry.second.bearings.get() != last) sum += entry.second.bearings->capacity() * sizeof(float);
     last = entry.second.bearings.get();

@@ -13,16 +13,16 @@
 
 namespace gaussmap::detail {
 
-/// Adds to every cell the rays that went through it and ended well behind, times `weight`.
+/// Adds `weight` to SegmentCell::crossed for each ray that passed through the cell and ended well behind it.
 void countCrossings(const ScanBeams& beams, double weight, std::deque<LiveSegment>& segments);
 
-/// A few of the scans: one per half metre and quarter of a radian of heading. They show which places rays have passed
-/// through, for segments that are made later.
+/// Keeps one scan per half metre of position and quarter radian of heading. The kept scans show where rays have passed
+/// through segments that are created later.
 class Views {
  public:
-  /// Keeps the scan, or counts it as a repetition of the one that was kept near by.
+  /// Keeps the scan. If a scan of the same place and heading is already kept, counts this one as its repetition.
   void add(const LaserScan& scan);
-  /// Sets the crossings of all cells to those of the kept scans.
+  /// Replaces the crossings of all cells by those of the kept scans.
   void countCrossings(std::deque<LiveSegment>& segments) const;
   std::size_t bytes() const;
 
@@ -30,8 +30,8 @@ class Views {
   struct View {
     Vector<2> sensor{0.0, 0.0};
     double heading = 0.0;
-    double scans = 0.0;                                  // that it represents
-    std::shared_ptr<const std::vector<float>> bearings;  // most scans have the same
+    double scans = 0.0;                                  // number of scans that it represents
+    std::shared_ptr<const std::vector<float>> bearings;  // shared, because they are the same in most scans
     std::vector<float> ranges;                           // 0: no return
   };
   std::map<std::array<std::int64_t, 3>, View> views_;

@@ -33,9 +33,9 @@ void checkOptions(const PlanarScanOptions& options) {
             "must be at least z_min, " + numberText(options.z_min) + " m");
 }
 
-/// The points as seen from above, and how much they differ in height.
+/// The points as seen from above, and the range of their heights [m].
 struct FromAbove {
-  std::vector<Beam> beams;  // one a point
+  std::vector<Beam> beams;  // one per point
   double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
 };
 
@@ -58,7 +58,7 @@ FromAbove lookFromAbove(const Scan& scan, const Pose2& pose, const PlanarScanOpt
   return view;
 }
 
-/// Makes bearings go on beyond pi, if they all ascend, or all descend, by less than a turn. False if they do neither.
+/// Unwraps the bearings beyond pi. Returns false unless all ascend or all descend, by less than a full turn in total.
 bool unwrap(std::vector<Beam>& beams) {
   Beam* last = nullptr;
   double turn = 0.0;
@@ -77,7 +77,7 @@ bool unwrap(std::vector<Beam>& beams) {
   return std::abs(turn) < 2.0 * kPi;
 }
 
-/// Beams of unknown bearing get one between their neighbours; those before the first and behind the last known go.
+/// Interpolates unknown bearings between their neighbours. Removes those before the first and after the last known one.
 std::vector<Beam> fillIn(const std::vector<Beam>& beams) {
   std::vector<Beam> filled;
   std::size_t unknown = 0;
@@ -96,7 +96,7 @@ std::vector<Beam> fillIn(const std::vector<Beam>& beams) {
   return filled;
 }
 
-/// In a planar laser's order, ascending.
+/// Returns the beams by ascending bearing. They are sorted only if their own order is not that of a planar laser.
 std::vector<Beam> ordered(std::vector<Beam> beams) {
   if (unwrap(beams)) {
     beams = fillIn(beams);
@@ -110,7 +110,7 @@ std::vector<Beam> ordered(std::vector<Beam> beams) {
   return beams;
 }
 
-/// The median angle between neighbouring beams.
+/// Returns the median angle between neighbouring beams [rad], infinity without such an angle.
 double usualStep(const std::vector<Beam>& beams) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < beams.size(); ++i)
@@ -133,7 +133,7 @@ void addSweep(LaserScan& scan, const std::vector<Beam>& beams) {
   }
 }
 
-/// The nearest point in each step of the full turn.
+/// Adds one beam per step of the full turn: the nearest point in it, or no return.
 void addSlice(LaserScan& scan, const std::vector<Beam>& beams, double step_deg) {
   const auto count = static_cast<std::size_t>(std::lround(360.0 / step_deg));
   const double step = 2.0 * kPi / static_cast<double>(count);
@@ -154,7 +154,7 @@ LaserScan planarScan(const Scan& cloud, const PlanarScanOptions& options) {
   checkOptions(options);
   const Eigen::Matrix3d rotation = cloud.pose.rotation.toRotationMatrix();
   LaserScan scan;
-  scan.max_range = std::numeric_limits<double>::infinity();  // what is farther has no range here
+  scan.max_range = std::numeric_limits<double>::infinity();  // farther points have no range already
   scan.pose.translation = cloud.pose.translation.head<2>();
   scan.pose.heading = std::atan2(rotation(1, 0), rotation(0, 0));
   const FromAbove view = lookFromAbove(cloud, scan.pose, options);

@@ -8,7 +8,7 @@
 
 namespace gaussmap::detail {
 
-/// Weighted sums of points up to the second order [m, m^2], about an origin that is near them.
+/// Weighted sums of points up to the second order [m, m^2], relative to an origin near them.
 struct LineMoments {
   double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
 
@@ -39,12 +39,12 @@ struct LineMoments {
   }
 
   Vector<2> mean() const { return {x / n, y / n}; }
-  /// Of the coordinate along a unit direction [m^2].
+  /// Returns the variance of the coordinate along a unit direction [m^2].
   double variance(const Vector<2>& direction) const {
     const double a = direction.x(), b = direction.y(), mean = (a * x + b * y) / n;
     return std::max(0.0, (a * a * xx + 2.0 * a * b * xy + b * b * yy) / n - mean * mean);
   }
-  /// Mean of the squared distances from the line through `point` with unit normal `normal` [m^2].
+  /// Returns the mean squared distance from the line through `point` with unit normal `normal` [m^2].
   double squaredDistance(const Vector<2>& point, const Vector<2>& normal) const {
     const double offset = normal.dot(mean() - point);
     return variance(normal) + offset * offset;
@@ -54,7 +54,7 @@ struct LineMoments {
 /// The least-squares line of a set of points, Leal 2000 eq. [2].
 struct LineFit {
   Vector<2> center{0.0, 0.0};     ///< mean of the points [m]
-  Vector<2> direction{1.0, 0.0};  ///< first eigenvector; its sign says which side is free: the left one
+  Vector<2> direction{1.0, 0.0};  ///< first eigenvector, oriented to have the free side on its left
   double along = 0.0;             ///< lambda_1 [m^2]
   double across = 0.0;            ///< lambda_2 = sigma_n^2 [m^2]
 
@@ -63,7 +63,8 @@ struct LineFit {
   double offset(const Vector<2>& point) const { return normal().dot(point - center); }
 };
 
-/// `like`: the direction is the one of the two that points rather this way.
+/// Fits the least-squares line. Of its two directions it takes the one nearer to `like`. If no direction is better than
+/// the others, it takes `like`.
 inline LineFit fitLine(const LineMoments& m, const Vector<2>& like) {
   LineFit fit;
   fit.center = m.mean();
@@ -83,7 +84,7 @@ inline LineFit fitLine(const LineMoments& m, const Vector<2>& like) {
   return fit;
 }
 
-/// lambda_2 alone times the weight: the summed squared error of the least-squares line.
+/// Returns the summed squared error of the least-squares line [m^2]: weight times lambda_2.
 inline double squaredError(const LineMoments& m) {
   if (m.n <= 0.0) return 0.0;
   const double mx = m.x / m.n, my = m.y / m.n, a = m.xx / m.n - mx * mx, c = m.yy / m.n - my * my,

@@ -22,7 +22,7 @@ void LineSpread::addScan(const BeamSums& sums, const LineFit& line, const Vector
   last_covariance_ = covariance;
   last_jacobian_.setZero();
   if (covariance.isZero(0.0)) return;
-  // d changes by (normal, t - t_sensor) . (x, y, heading).
+  // A pose error (x, y, heading) changes d by (normal, t - t_sensor) . (x, y, heading).
   const Vector<2> normal = line.normal();
   const double from = line.position(sensor);
   last_jacobian_ << sums.n * normal.x(), sums.n * normal.y(), sums.t - sums.n * from,  //
@@ -42,7 +42,7 @@ void LineSpread::shift(double by) {
 }
 
 void LineSpread::turn() {
-  // t and d change their signs, their product does not.
+  // t and d change their signs, but t d does not.
   for (Matrix<2>* matrix : {&pose_, &shared_}) {
     (*matrix)(0, 1) = -(*matrix)(0, 1);
     (*matrix)(1, 0) = -(*matrix)(1, 0);
@@ -87,14 +87,14 @@ void LineSpread::absorb(const LineSpread& other) {
 
 Matrix<2> LineSpread::covariance(const LineFit& line) const {
   const double along = std::max(line.along, kFloor), own = own_ / n_;
-  // The evidence has the errors and, once more, what its observation models say about them. What is left is blamed on
-  // the poses; of k scans that a line was fitted to, k - 2 tell how far apart they are.
+  // The evidence contains the errors twice: in the measurements, and in the spread that the observation model adds. The
+  // rest of the variance is attributed to the poses. The fit of a line to k scans leaves k - 2 degrees of freedom.
   const double left = std::max(0.0, line.across - 2.0 * (own_ + declared_) / n_);
   const double scans = n_ * n_ / std::max(shared_(0, 0), kFloor);
   Matrix<2> right = pose_ + left * scans / std::max(scans - 2.0, 1.0) * shared_;
   right(0, 0) += own * n_;
   right(1, 1) += own * n_ * along;
-  // About the centre of the evidence the normal equations are diagonal.
+  // Relative to the centre of the evidence, the normal equations are diagonal.
   const Eigen::Vector2d inverse(1.0 / n_, 1.0 / (n_ * along));
   Matrix<2> result = inverse.asDiagonal() * right * inverse.asDiagonal();
   result(0, 0) += kFloor;

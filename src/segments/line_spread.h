@@ -7,40 +7,42 @@
 
 namespace gaussmap::detail {
 
-/// Beams of one scan that belong to one line: with t the position of their ends along it.
+/// Sums over the beams of one scan that belong to one line. t is the position of a beam's end along the line [m].
 struct BeamSums {
-  double n = 0.0, t = 0.0, tt = 0.0;  ///< sum of 1, t, t^2
-  double variance = 0.0;              ///< sum of the beams' own variances across the line [m^2]
+  double n = 0.0, t = 0.0, tt = 0.0;  ///< sums of 1, t and t^2
+  double variance = 0.0;              ///< sum of the beams' variances across the line, by range and bearing noise [m^2]
 };
 
-/// What the errors of scans do to a least-squares line. All beams of a scan share its pose error: n counts scans.
-/// With t the position along the line and d the offset of a beam's end, least squares solves
-/// [n, sum t; sum t, sum t^2] (offset, slope) = (sum d, sum t d); kept is the covariance of the right-hand side.
+/// The covariance of a least-squares line, propagated from the errors of the scans. All beams of a scan share its pose
+/// error, so more scans reduce this error, but more beams of one scan do not.
+/// Let t be the position of a beam's end along the line and d its offset from the line. Least squares solves
+/// [n, sum t; sum t, sum t^2] (offset, slope) = (sum d, sum t d). This class keeps the covariance of the right-hand
+/// side. t is relative to a reference point on the line.
 class LineSpread {
  public:
-  /// Adds a scan's beams; t counts from the line's centre, which is the reference.
+  /// Adds the beams of a scan. The reference point must be the line's centre.
   void addScan(const BeamSums& sums, const LineFit& line, const Vector<2>& sensor, const Matrix<3>& covariance,
                std::int64_t scan);
-  /// For a reference that lies farther along the line by `by` [m].
+  /// Moves the reference point along the line by `by` [m].
   void shift(double by);
-  /// For the line in the other direction.
+  /// Reverses the direction of the line.
   void turn();
-  /// Of a part that has this share of the observations, seen by the same scans.
+  /// Returns the spread of a part of the line that has this share of the observations and was seen by the same scans.
   LineSpread part(double share) const;
-  /// Adds another one with the same reference.
+  /// Adds the observations of another line spread with the same reference point.
   void absorb(const LineSpread& other);
   double beams() const { return n_; }
-  /// Covariance of (offset, angle) of the line about its centre, which the reference must be.
+  /// Returns the covariance of (offset [m], angle [rad]) of the line at its centre, which must be the reference point.
   Matrix<2> covariance(const LineFit& line) const;
 
  private:
-  Matrix<2> pose_ = Matrix<2>::Zero();    // by the covariances that the scans declare
-  Matrix<2> shared_ = Matrix<2>::Zero();  // if every scan were off by an error of variance 1
+  Matrix<2> pose_ = Matrix<2>::Zero();    // from the pose covariances of the scans
+  Matrix<2> shared_ = Matrix<2>::Zero();  // from an offset of variance 1 per scan, shared by its beams
   double n_ = 0.0;
-  double own_ = 0.0;       // sum of the beams' own variances [m^2]
-  double declared_ = 0.0;  // sum over beams of the variance by declared covariances [m^2]
+  double own_ = 0.0;       // sum of BeamSums::variance [m^2]
+  double declared_ = 0.0;  // sum over beams of the variance from the pose covariances [m^2]
 
-  // The last scan's part: what two segments have from the same scan adds up before it is squared.
+  // The contribution of the last scan. absorb() adds two contributions of the same scan before it squares them.
   std::int64_t last_scan_ = -1;
   Vector<2> last_shared_{0.0, 0.0};
   Eigen::Matrix<double, 2, 3> last_jacobian_ = Eigen::Matrix<double, 2, 3>::Zero();

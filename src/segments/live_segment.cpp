@@ -8,12 +8,12 @@ namespace gaussmap::detail {
 namespace {
 
 constexpr double kTurn = 0.1;      // sine of the angle between line and row above which the cells are rebuilt
-constexpr double kNothing = 1e-9;  // weight of what rounding leaves of no cells
-constexpr double kSpill = 0.2;     // a cell at an end has at least this share of what its neighbour has
+constexpr double kNothing = 1e-9;  // a smaller weight is zero with a rounding error
+constexpr double kSpill = 0.2;     // minimum share that a cell at an end has of its neighbour's weight
 
-/// Sums over cells, and how far they reach along a line.
+/// Sums over cells, and their extent along a line.
 struct RowShape {
-  LineMoments moments;  // each cell weighted by cellWeight()
+  LineMoments moments;  // each cell scaled to the weight cellWeight()
   double cells = 0.0;   // sum of these weights
   double begin = std::numeric_limits<double>::infinity(), end = -begin;
 };
@@ -27,10 +27,10 @@ RowShape shapeOf(const CellRow& row, std::size_t first, std::size_t last, const 
     const double weight = cellWeight(hits.n);
     shape.moments += weight / hits.n * hits;
     shape.cells += weight;
-    // Noise puts a little into the cell behind an end.
+    // Noise puts a few hits into the cell after an end. They do not extend the segment.
     if (i == first && i + 1 < last && kSpill * cells[i + 1].hits.n > hits.n) continue;
     if (i + 1 == last && i > first && kSpill * cells[i - 1].hits.n > hits.n) continue;
-    // Evenly spread over [a, b] the mean is (a + b) / 2 and the variance (b - a)^2 / 12.
+    // A uniform distribution over [a, b] has mean (a + b) / 2 and variance (b - a)^2 / 12.
     const double t = line.position(hits.mean()),
                  half = std::min(std::sqrt(3.0 * hits.variance(line.direction)), 0.5 * row.size());
     shape.begin = std::min(shape.begin, t - half);
@@ -99,7 +99,7 @@ LiveSegment partOf(const LiveSegment& segment, std::size_t first, std::size_t la
 }
 
 LiveSegment merged(const LiveSegment& a, const LiveSegment& b) {
-  // Along the row of a short segment the cells of a long one would fall together.
+  // Uses the row of the longer segment. On the row of a short segment, the cells of a long one could coincide.
   const LiveSegment &longer = a.length() >= b.length() ? a : b, &shorter = a.length() >= b.length() ? b : a;
   LiveSegment both;
   both.alive = true;

@@ -8,8 +8,8 @@ namespace {
 
 constexpr std::size_t kMinToSplit = 4;  // beams
 
-/// The break point by prefix sums in the order of the beams: along a run that turns back on itself, positions along a
-/// line would mix its two arms.
+/// Returns the best break point in the order of the beams. The order along a line would be wrong for a run that turns
+/// back on itself: it would mix the two arms.
 std::size_t bestBreakOfBeams(const ScanBeams& beams, std::size_t first, std::size_t last) {
   LineMoments left, right;
   for (std::size_t i = first; i < last; ++i) right.add(beams.hits[i]);
@@ -27,7 +27,7 @@ std::size_t bestBreakOfBeams(const ScanBeams& beams, std::size_t first, std::siz
   return best;
 }
 
-/// A segment of the ends of these beams, to be voted on.
+/// Returns a segment of the ends of these beams, for a vote only.
 LiveSegment segmentOf(const ScanBeams& beams, std::size_t first, std::size_t last, double cell) {
   LiveSegment segment;
   LineMoments sum;

@@ -11,15 +11,15 @@
 
 namespace gaussmap::detail {
 
-/// Makes segments of beams that belong to none of the map.
+/// Creates segments from beams that belong to no segment of the map.
 class NewSegments {
  public:
   /// `cell`: length of the cells along a segment [m].
   NewSegments(const SegmentVotes& votes, double cell, EvidenceCollector& collector, SegmentStore& store)
       : votes_(votes), cell_(cell), collector_(collector), store_(store) {}
 
-  /// Neighbouring beams [first, last) become one segment, or several if the utility votes for splitting them. Their
-  /// numbers are entered as `owners` of the beams and appended to `created`.
+  /// Creates one segment from the neighbouring beams [first, last), or several if the utility votes for splits. Writes
+  /// the numbers of the segments to the `owners` of the beams, and appends them to `created`.
   void createFrom(const ScanBeams& beams, std::size_t first, std::size_t last, std::vector<int>& owners,
                   std::vector<int>& created);
 

@@ -12,7 +12,7 @@
 namespace gaussmap::detail {
 namespace {
 
-/// Every segment becomes those ranges of it that are worth keeping, given all rays that passed.
+/// Replaces each segment by the ranges of it that score best. Counts all rays that passed through them.
 void cutToRanges(const Views& views, WorkingSet& set) {
   std::deque<LiveSegment>& segments = set.segments;
   views.countCrossings(segments);

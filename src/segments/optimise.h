@@ -9,9 +9,9 @@
 
 namespace gaussmap::detail {
 
-/// A better set of segments for the same evidence: all are decided on together, by which lines explain the most of the
-/// evidence for what they cost. `views` shows which places rays have passed through. The given segments are not
-/// changed.
+/// Returns a better set of segments for the same evidence. It considers all segments together, and chooses the lines
+/// that explain the most evidence for their cost. `views` shows where rays have passed through. Does not change the
+/// given segments.
 std::deque<LiveSegment> optimiseSegments(const std::deque<LiveSegment>& segments, const Views& views,
                                          const SegmentFitterOptions& options);
 

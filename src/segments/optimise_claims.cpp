@@ -6,8 +6,8 @@
 namespace gaussmap::detail {
 namespace {
 
-constexpr double kSameSideCosine = 0.5;  // of the angle between segments that look the same way, at least
-constexpr double kClaimReach = 0.08;     // of a segment beyond its ends [m]
+constexpr double kSameSideCosine = 0.5;  // minimum cosine of the angle between segments of ClaimSide::Same
+constexpr double kClaimReach = 0.08;     // a segment claims atoms up to this far beyond its ends [m]
 
 }  // namespace
 
@@ -55,7 +55,8 @@ void reassign(WorkingSet& set) {
 
 void removeRedundant(WorkingSet& set) {
   const std::vector<std::vector<Claim>> all = claimsOf(set, ClaimSide::Any);
-  // Observations that only this segment explains: per atom the difference between the best claim and the next.
+  // The margin is the number of observations that only this segment explains. An atom adds the difference between its
+  // best claim and the next.
   std::vector<double> margins(set.segments.size(), 0.0), costs(set.segments.size(), 0.0);
   std::vector<std::vector<std::size_t>> claimed(set.segments.size());
   const auto count = [&](std::size_t atom, double sign) {

@@ -7,7 +7,7 @@
 
 namespace gaussmap::detail {
 
-/// A segment that explains an atom of evidence, and how many of its observations.
+/// A segment that explains an evidence atom, and how many of the atom's observations it explains.
 struct Claim {
   int segment = kNone;
   double explained = 0.0;
@@ -15,14 +15,14 @@ struct Claim {
 
 enum class ClaimSide {
   Any,  ///< all segments
-  Same  ///< only those that look the same way as the segment that gathered the atom
+  Same  ///< only those with about the same direction as the owner of the atom
 };
 
-/// Per atom the segments that explain it, the best first.
+/// Returns per atom the segments that explain it, the best first.
 std::vector<std::vector<Claim>> claimsOf(WorkingSet& set, ClaimSide side);
-/// Gives every atom to the segment that explains it best.
+/// Assigns each atom to the segment that explains it best. Omits atoms that no segment explains.
 void reassign(WorkingSet& set);
-/// Deletes segments that cost more than they explain beside the others, the worst first.
+/// Deletes segments that cost more than the evidence which only they explain, the worst first.
 void removeRedundant(WorkingSet& set);
 
 }  // namespace gaussmap::detail

@@ -10,11 +10,11 @@
 namespace gaussmap::detail {
 namespace {
 
-constexpr double kFillReach = 1.0;      // of a new segment from one of its atoms [m]
-constexpr double kShortestBase = 0.05;  // between two atoms that give a direction [m]
-constexpr double kLittle = 4.0;         // a segment explains little if its score is below the cost of so many segments
+constexpr double kFillReach = 1.0;      // maximum distance of a new segment's atoms from the first one [m]
+constexpr double kShortestBase = 0.05;  // minimum distance of two atoms that define a direction [m]
+constexpr double kLittle = 4.0;         // a segment explains little if its score is below this many segment costs
 
-/// Looks for lines through atoms that no segment explains.
+/// Searches for lines through atoms that no segment explains.
 class LineSearch {
  public:
   struct Line {
@@ -27,7 +27,7 @@ class LineSearch {
     for (const int atom : left) lattice_[key(mean(atom), 0, 0)].push_back(atom);
   }
 
-  /// Atoms around one of them.
+  /// Returns the atoms near an atom, and the atom itself.
   std::vector<int> around(int atom) const {
     std::vector<int> near;
     for (int dx = -1; dx <= 1; ++dx)
@@ -40,7 +40,7 @@ class LineSearch {
     return near;
   }
 
-  /// The best line through an atom and one of those around it, or along the segment that gathered it.
+  /// Returns the best line through an atom: to one of the atoms near it, or along the atom's owner.
   Line bestThrough(int atom, const std::vector<int>& near) const {
     Line best;
     for (const int other : near) {
@@ -60,7 +60,7 @@ class LineSearch {
     return best;
   }
 
-  /// The range of a line through these atoms with the highest score; score 0 if there is none above 0.
+  /// Returns the range of a line through these atoms that has the highest score. The score is 0 if none is above 0.
   Line along(const LineFit& line, const std::vector<int>& atoms) const {
     Line found;
     found.line = line;
@@ -99,7 +99,7 @@ class LineSearch {
   std::unordered_map<std::uint64_t, std::vector<int>> lattice_;
 };
 
-/// A segment of these atoms along a line.
+/// Returns a segment of these atoms along a line.
 LiveSegment fromAtoms(const WorkingSet& set, const std::vector<int>& members, const LineFit& line) {
   LiveSegment segment;
   segment.alive = true;
@@ -145,7 +145,7 @@ void fillGaps(WorkingSet& set) {
     LineSearch::Line found = search.bestThrough(atom, near);
     if (found.score > 0.0) candidates.push_back({std::move(found), std::move(near)});
   }
-  // The best first; of the others what is left to explain.
+  // Takes the best candidate first. The next ones get only the atoms that are still unexplained.
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.found.score > b.found.score; });
   std::vector<bool> used(set.atoms.size(), false);

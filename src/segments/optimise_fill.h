@@ -5,7 +5,7 @@
 
 namespace gaussmap::detail {
 
-/// Deletes short segments that explain little, and lays new ones through the evidence that no segment explains.
+/// Deletes short segments that explain little. Then fits new segments to the evidence that no segment explains.
 void fillGaps(WorkingSet& set);
 
 }  // namespace gaussmap::detail

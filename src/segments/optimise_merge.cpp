@@ -8,10 +8,10 @@
 namespace gaussmap::detail {
 namespace {
 
-constexpr double kMergeCosine = 0.95;  // of the angle between two segments, at least
-constexpr double kMergeGap = 0.3;      // between them, at most [m]
+constexpr double kMergeCosine = 0.95;  // minimum cosine of the angle between two segments
+constexpr double kMergeGap = 0.3;      // maximum distance between them [m]
 
-/// Merges a segment with the neighbour for which the score increases most; false if there is none.
+/// Merges a segment with the neighbour that increases the score most. Returns false if no neighbour increases it.
 bool mergeBest(int id, WorkingSet& set) {
   std::deque<LiveSegment>& segments = set.segments;
   const LiveSegment& segment = segments[id];

@@ -5,7 +5,7 @@
 
 namespace gaussmap::detail {
 
-/// Merges neighbours along a line for as long as this increases the score.
+/// Merges neighbouring segments of similar direction until no merge increases the score.
 void mergeNeighbours(WorkingSet& set);
 
 }  // namespace gaussmap::detail

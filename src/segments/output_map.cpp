@@ -8,19 +8,20 @@
 namespace gaussmap::detail {
 namespace {
 
-constexpr double kCorner = 0.17;        // sine of the smallest angle between lines that are joined
-constexpr double kUpright = 0.5;        // the same for a segment that ends on another
-constexpr std::size_t kEndCells = 1;    // at each end ...
-constexpr std::size_t kManyCells = 16;  // ... of a segment with at least so many are left out of its line
-constexpr double kReach = 0.15;         // by which a segment is lengthened or shortened at most, to be joined [m]
+constexpr double kCorner = 0.17;        // minimum sine of the angle between two linked lines, to join them
+constexpr double kUpright = 0.5;        // the same for a segment that ends on a wall
+constexpr std::size_t kEndCells = 1;    // cells at each end that are left out of the final line fit ...
+constexpr std::size_t kManyCells = 16;  // ... if a segment has at least this many cells
+constexpr double kReach = 0.15;         // maximum change of a segment's length to join it [m]
 
-/// The line without the cells at its ends, which hold a little of what stands next to it and pull the line there.
+/// Fits the line without the cells at its ends. These cells contain some hits on adjacent surfaces, which would pull
+/// the line towards these surfaces.
 LiveSegment withoutEnds(LiveSegment live) {
   const std::vector<SegmentCell>& cells = live.evidence.row.cells();
   if (cells.size() < kManyCells) return live;
   LineMoments inner;
   for (std::size_t i = kEndCells; i + kEndCells < cells.size(); ++i) inner += cells[i].hits;
-  if (!(inner.n > 0.0)) return live;  // particles of the middle may all have been forgotten
+  if (!(inner.n > 0.0)) return live;  // all particles of the middle may have been dropped
   const LineFit line = fitLine(inner, live.line.direction);
   live.spread.shift(live.line.position(line.center));
   const Vector<2> start = live.start(), finish = live.finish();
@@ -36,7 +37,7 @@ Segment toSegment(const LiveSegment& live, const Vector<2>& origin) {
   segment.end = live.finish() + origin;
   segment.normal_variance = live.line.across;
   segment.covariance = live.spread.covariance(live.line);
-  // From the centre of the evidence to the middle of the segment.
+  // Moves the covariance from the centre of the evidence to the middle of the segment.
   const double by = 0.5 * (live.begin + live.end);
   Matrix<2> shift;
   shift << 1.0, by, 0.0, 1.0;
@@ -46,7 +47,8 @@ Segment toSegment(const LiveSegment& live, const Vector<2>& origin) {
   return segment;
 }
 
-/// Moves the end of one and the start of the other to where their lines meet, if that is near both: then true.
+/// Moves the end of `first` and the start of `second` to the intersection of their lines. Returns false, and moves
+/// nothing, if the intersection is not near both.
 bool join(Segment& first, Segment& second) {
   const Vector<2> u = first.direction(), v = second.direction();
   const double sine = u.x() * v.y() - u.y() * v.x();
@@ -59,7 +61,8 @@ bool join(Segment& first, Segment& second) {
   return true;
 }
 
-/// Where the line of `segment` meets `wall` from its free side, if that is near this end of the segment.
+/// Returns the point where the line of `segment` meets `wall` from the wall's free side. Returns std::nullopt if there
+/// is no such point near `end`, an end of the segment.
 std::optional<Vector<2>> meets(const Segment& segment, const Vector<2>& end, const Segment& wall) {
   const Vector<2> u = segment.direction(), v = wall.direction();
   const double sine = u.x() * v.y() - u.y() * v.x();
@@ -75,7 +78,7 @@ std::optional<Vector<2>> meets(const Segment& segment, const Vector<2>& end, con
   return vertex;
 }
 
-/// Moves free ends that nearly reach another segment's line onto it.
+/// Moves free ends onto the line of another segment if they nearly reach it.
 void touchWalls(const std::vector<bool>& free_start, const std::vector<bool>& free_end,
                 std::vector<Segment>& segments) {
   const std::vector<Segment> walls = segments;
@@ -119,7 +122,7 @@ SegmentMap outputMap(const std::deque<LiveSegment>& live, const Vector<2>& origi
   };
   for (int id = 0; id < static_cast<int>(live.size()); ++id)
     if (live[id].alive && live[id].previous == kNone) walk(id, false);
-  for (int id = 0; id < static_cast<int>(live.size()); ++id)  // what is left runs in circles
+  for (int id = 0; id < static_cast<int>(live.size()); ++id)  // the remaining chains are closed
     if (live[id].alive && !done[id]) walk(id, true);
   touchWalls(free_start, free_end, map.segments);
   return map;

@@ -8,7 +8,7 @@
 
 namespace gaussmap::detail {
 
-/// Segments in the map frame, chain by chain, linked neighbours joined where their lines meet.
+/// Returns the segments in the map frame, chain by chain. Linked neighbours are joined where their lines meet.
 SegmentMap outputMap(const std::deque<LiveSegment>& segments, const Vector<2>& origin);
 
 }  // namespace gaussmap::detail

@@ -9,10 +9,10 @@
 
 namespace gaussmap::detail {
 
-/// A scan about the origin of the map's sums.
+/// A scan with its coordinates relative to the origin of the map's sums.
 struct ScanBeams {
   LaserScan scan;
-  std::vector<Vector<2>> hits;     ///< ends of the beams that returned
+  std::vector<Vector<2>> hits;     ///< ends of the beams that returned [m]; zero for the others
   std::uint64_t first_number = 0;  ///< number of the observation of beam 0
 
   explicit ScanBeams(const LaserScan& original, const Vector<2>& origin = {0.0, 0.0}, std::uint64_t number = 0)

@@ -8,8 +8,8 @@
 namespace gaussmap::detail {
 namespace {
 
-constexpr std::size_t kMinBeams = 3;    // beams that tell a direction ...
-constexpr double kShortestPiece = 1.3;  // ... over so many tolerances
+constexpr std::size_t kMinBeams = 3;    // minimum number of beams that show a direction ...
+constexpr double kShortestPiece = 1.3;  // ... and minimum length of their piece, in tolerances
 
 }  // namespace
 
@@ -45,7 +45,7 @@ std::vector<Vector<2>> straightPieces(const std::vector<BeamRun>& runs, const st
     if (run.last - run.first < kMinBeams) continue;
     const Vector<2> chord = hits[run.last - 1] - hits[run.first];
     const double length = chord.norm();
-    // The beam farthest from the chord, or from its first end where the chord has no direction.
+    // Finds the beam farthest from the chord, or from its first end if the chord is too short to have a direction.
     std::size_t farthest = run.first;
     double most = 0.0;
     for (std::size_t i = run.first + 1; i + 1 < run.last; ++i) {

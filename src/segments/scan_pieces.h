@@ -8,19 +8,19 @@
 
 namespace gaussmap::detail {
 
-/// Neighbouring beams [first, last).
+/// A run of neighbouring beams [first, last).
 struct BeamRun {
   std::size_t first = 0;
   std::size_t last = 0;
 };
 
-/// Maximal runs of neighbouring beams that returned and end less than `gap` apart [m]. Where a scan leaves beams
-/// without return out, a step of the bearings of more than 1.5 times the smallest one ends a run.
+/// Returns the maximal runs of neighbouring beams that returned and whose ends are less than `gap` [m] apart. A bearing
+/// step of more than 1.5 times the smallest step also ends a run, because some scans omit beams without a return.
 std::vector<BeamRun> findRuns(const ScanBeams& beams, double gap);
 
-/// For every beam from the first to the last end of the straight piece of surface that it belongs to [m], the sensor on
-/// the left; zero where neighbours do not tell. The pieces of each run, by iterative end-point fit with this tolerance
-/// [m].
+/// Returns per beam the vector from the first to the last beam end of the straight piece of surface that it belongs to
+/// [m]. The sensor is on the left of this vector. It is zero if the neighbours do not show a direction. The pieces of
+/// each run come from an iterative end-point fit with this tolerance [m].
 std::vector<Vector<2>> straightPieces(const std::vector<BeamRun>& runs, const std::vector<Vector<2>>& hits,
                                       double tolerance);
 

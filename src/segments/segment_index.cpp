@@ -7,7 +7,7 @@
 namespace gaussmap::detail {
 namespace {
 
-constexpr double kSlack = 0.15;  // strips are entered with so much room to move [m]
+constexpr double kSlack = 0.15;  // strips are entered with this margin, so that small changes cost nothing [m]
 
 }  // namespace
 
@@ -33,7 +33,7 @@ void SegmentIndex::update(int id, const Strip& strip) {
   erase(id);
   entered.in_use = true;
   entered.strip = strip.grown(kSlack);
-  // Column by column of the lattice, the rows that the strip passes there.
+  // Finds the rows that the strip passes through, for each column of the lattice.
   const Strip& wide = entered.strip;
   Vector<2> a = wide.start, b = wide.start + wide.length * wide.direction;
   const bool steep = std::abs(wide.direction.y()) > std::abs(wide.direction.x());

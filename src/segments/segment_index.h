@@ -9,26 +9,26 @@
 
 namespace gaussmap::detail {
 
-/// The polygon whose points belong to a segment: a rectangle about its middle line.
+/// The polygon that contains the observations of a segment: a rectangle around its middle line.
 struct Strip {
-  Vector<2> start{0.0, 0.0};      ///< ends of the middle line [m]
-  Vector<2> direction{1.0, 0.0};  ///< unit vector from start on
+  Vector<2> start{0.0, 0.0};      ///< start of the middle line [m]
+  Vector<2> direction{1.0, 0.0};  ///< unit vector along the middle line
   double length = 0.0;            ///< [m]
   double half_width = 0.0;        ///< [m]
 
   bool contains(const Vector<2>& point) const;
-  /// Longer and wider by `by` all around.
+  /// Returns the strip extended by `by` [m] on every side.
   Strip grown(double by) const;
 };
 
-/// Finds the strips that a point lies in, by the cells of a square lattice.
+/// Finds the strips that contain a point, by means of a square lattice.
 class SegmentIndex {
  public:
   explicit SegmentIndex(double cell = 0.5) : cell_(cell) {}
-  /// Number `id` now has this strip. Cheap while it stays within what is already entered.
+  /// Sets the strip of number `id`. This is fast if the new strip lies within the area that is already entered for it.
   void update(int id, const Strip& strip);
   void erase(int id);
-  /// Numbers whose strip may contain the point, and all whose strip does.
+  /// Returns all numbers whose strip contains the point, and some others near it.
   const std::vector<int>& near(const Vector<2>& point) const;
   std::size_t bytes() const;
 

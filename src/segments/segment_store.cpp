@@ -8,8 +8,8 @@ namespace gaussmap::detail {
 
 namespace {
 
-constexpr double kMany = 2.0;      // rays through for one that ends on it
-constexpr double kMinRays = 10.0;  // through what is pruned
+constexpr double kMany = 2.0;  // a pruned segment has at least this many rays through it per ray that ends on it ...
+constexpr double kMinRays = 10.0;  // ... and at least this many rays through it
 
 }  // namespace
 

@@ -11,8 +11,8 @@
 
 namespace gaussmap::detail {
 
-/// The segments of a map while it grows, by number: their chains, and an index of the places that they cover. Numbers
-/// of deleted segments are used again.
+/// The segments of the map that a SegmentFitter builds, by number, with their chains and a spatial index. Numbers of
+/// deleted segments are used again.
 class SegmentStore {
  public:
   explicit SegmentStore(const SegmentFitterOptions& options)
@@ -23,21 +23,21 @@ class SegmentStore {
   const LiveSegment& operator[](int id) const { return segments_[static_cast<std::size_t>(id)]; }
   LiveSegment& operator[](int id) { return segments_[static_cast<std::size_t>(id)]; }
 
-  /// A new segment, alive but without evidence; returns its number.
+  /// Creates a segment that is alive but has no evidence. Returns its number.
   int create();
   /// Deletes a segment.
   void remove(int id);
-  /// The cells before number `cut` stay, the others become a new segment. Returns the number of the new one.
+  /// Moves the cells from number `cut` on into a new segment. Links it to the old one if `linked`. Returns its number.
   int split(int id, std::size_t cut, bool linked);
   void merge(int into, int from);
-  /// Deletes segments that many more rays cross than end on. Returns how many.
+  /// Deletes segments that many more rays cross than end on. Returns how many it deleted.
   std::size_t prune();
 
-  /// The polygon whose points belong to a segment, Leal 2000 sec. 4.1.
+  /// Returns the polygon whose observations belong to a segment, Leal 2000 sec. 4.1.
   Strip polygon(const LiveSegment& segment) const;
-  /// Enters a segment into the index, at the place where it is now.
+  /// Enters the current position of a segment into the index.
   void enter(int id) { index_.update(id, polygon((*this)[id])); }
-  /// Numbers of all segments whose polygon contains the point, and some others near it.
+  /// Returns the numbers of all segments whose polygon contains the point, and of some others near it.
   const std::vector<int>& near(const Vector<2>& point) const { return index_.near(point); }
 
   std::size_t bytes() const;

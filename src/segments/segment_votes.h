@@ -9,7 +9,7 @@
 
 namespace gaussmap::detail {
 
-/// The votes of a utility, which sees the map frame, on segments whose coordinates are about the origin of the sums.
+/// Asks a utility for its votes. Segments have coordinates relative to origin(); the utility gets the map frame.
 class SegmentVotes {
  public:
   explicit SegmentVotes(std::shared_ptr<SegmentUtility> utility) : utility_(std::move(utility)) {}
@@ -25,7 +25,7 @@ class SegmentVotes {
     return utility_->merge(inMap(first), inMap(second), inMap(whole));
   }
   double nothing(const SegmentGoals& segment) const { return utility_->nothing(inMap(segment)); }
-  /// The observer is now here [m], map frame.
+  /// Gives the utility the current position of the observer [m], map frame.
   void observe(const Vector<2>& position) { utility_->observe(position); }
   bool reconsider(const LiveSegment& segment) const {
     return utility_->reconsider(segment.start() + origin_, segment.finish() + origin_);

@@ -19,7 +19,7 @@ void check(const SensorNoise& noise) {
           "must be finite and not negative");
 }
 
-/// L with L L^T = covariance, which may be singular.
+/// Returns L with L L^T = covariance. The covariance may be singular.
 Matrix<3> factor(const Matrix<3>& covariance) {
   if (covariance.isZero(0.0)) return Matrix<3>::Zero();
   const Eigen::LDLT<Eigen::Matrix3d> ldlt(covariance);
@@ -28,7 +28,7 @@ Matrix<3> factor(const Matrix<3>& covariance) {
   return ldlt.transpositionsP().transpose() * (lower * root.asDiagonal());
 }
 
-/// h: where a beam ends in the map frame.
+/// h of Leal 2000 eq. [1]: the end of a beam [m], map frame.
 Vector<2> end(const Vector<2>& sensor, double heading, double bearing, double range) {
   const double angle = heading + bearing;
   return sensor + Vector<2>(range * std::cos(angle), range * std::sin(angle));
@@ -69,8 +69,8 @@ UnscentedObservations::UnscentedObservations(const SensorNoise& noise) : noise_(
 
 void UnscentedObservations::observe(const LaserScan& scan, std::size_t beam, std::uint64_t,
                                     std::vector<ObservationPoint>& points) const {
-  // Two points on each axis, sqrt(5) standard deviations out for five dimensions: weights 1/10 each. What is known
-  // exactly needs none, and fewer dimensions lie nearer in.
+  // Two points per dimension, sqrt(dimensions) standard deviations from the mean, with weight 1 / (2 dimensions) each.
+  // For five dimensions these are sqrt(5) and 1/10. An exact pose needs no points, so two dimensions remain.
   const bool certain_pose = scan.pose.covariance.isZero(0.0);
   const int dimensions = certain_pose ? 2 : 5;
   const double far = std::sqrt(static_cast<double>(dimensions)), weight = 0.5 / dimensions;

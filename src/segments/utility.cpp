@@ -67,7 +67,7 @@ double ViewpointDependentUtility::split(const SegmentGoals& whole, const Segment
 double ViewpointDependentUtility::merge(const SegmentGoals& first, const SegmentGoals& second,
                                         const SegmentGoals& whole) const {
   if (!inField(whole) && whole.length < options_.far.min_length) return 1.0;
-  return far_.merge(first, second, whole);  // l_min has no part in it
+  return far_.merge(first, second, whole);  // this vote does not depend on l_min
 }
 
 void ViewpointDependentUtility::observe(const Vector<2>& position) {

@@ -7,9 +7,9 @@
 namespace gaussmap::detail {
 namespace {
 
-constexpr double kLinkDistance = 0.15;  // distance of ends that are linked without a scan that linked them [m]
-constexpr double kCornerSine = 0.7;     // sine from which on neighbours make a corner
-constexpr double kCornerGap = 0.2;      // between the ends at a corner [m]
+constexpr double kLinkDistance = 0.15;  // maximum distance of ends that are linked although no scan linked them [m]
+constexpr double kCornerSine = 0.7;     // minimum sine of the angle between neighbours at a corner
+constexpr double kCornerGap = 0.2;      // maximum distance between the ends at a corner [m]
 
 }  // namespace
 
@@ -18,9 +18,9 @@ WorkingSet::WorkingSet(const std::deque<LiveSegment>& given, const SegmentFitter
   double observations = 0.0;
   for (std::size_t id = 0; id < segments.size(); ++id) {
     LiveSegment& segment = segments[id];
-    segment.evidence.particles = {};  // the rows hold what is needed
+    segment.evidence.particles = {};  // the rows contain everything that is needed
     if (!segment.alive) continue;
-    // A limited number of particles represents all observations.
+    // Scales the moments of a limited number of particles to the number of all observations.
     const double scale =
         options.policy == EvidencePolicy::ParticleSets ? segment.spread.beams() / segment.total.n : 1.0;
     segment.total = scale * segment.total;

@@ -10,16 +10,16 @@
 
 namespace gaussmap::detail {
 
-/// A cell of evidence, as the original segments gathered it.
+/// A cell of evidence of an original segment.
 struct EvidenceAtom {
   LineMoments hits;
   int owner = kNone;   ///< the original segment
-  double share = 0.0;  ///< of the evidence of that segment
+  double share = 0.0;  ///< share of the owner's evidence
 };
 
-/// A copy of segments on the way to a better set, which the steps of optimiseSegments() change.
+/// A copy of the segments, which the steps of optimiseSegments() change to a better set.
 struct WorkingSet {
-  /// Refers to `given`, which must outlive it.
+  /// Keeps a reference to `given`, which must outlive this object.
   WorkingSet(const std::deque<LiveSegment>& given, const SegmentFitterOptions& options);
 
   const std::deque<LiveSegment>& originals;
@@ -30,15 +30,15 @@ struct WorkingSet {
   SegmentIndex index;
 
   void remove(int id);
-  /// Enters all segments into the index, longer by `reach` [m] at both ends.
+  /// Builds the index again from all segments, each extended by `reach` [m] at both ends.
   void enterAll(double reach);
   Strip strip(const LiveSegment& segment, double reach) const;
-  /// Links ends to starts that lie near by; links between ends that do not are undone.
+  /// Links ends to starts near them. Removes links between an end and a start that are too far apart.
   void linkNear();
-  /// Whether a segment is the short side between two corners, as at the end of a thin wall: rays hardly tell whether it
-  /// is there, but without it there are no corners.
+  /// Returns true if a segment is the short side between two corners, as at the end of a thin wall. Rays hardly show
+  /// whether it exists, but without it the corners would be lost.
   bool closesCorner(int id) const;
-  /// The segments that are alive, numbered without gaps, linked.
+  /// Returns the segments that are alive, numbered without gaps and linked.
   std::deque<LiveSegment> result();
 };
 

@@ -8,12 +8,12 @@
 
 namespace gaussmap::detail {
 
-/// About the z axis from x to y, in [-pi, pi] [rad].
+/// Returns the angle about the z axis, counted from x to y, in [-pi, pi] [rad].
 inline double azimuthOf(const Eigen::Vector3d& point) {
   return std::atan2(point.y(), point.x());
 }
 
-/// Above the xy plane, in [-pi / 2, pi / 2] [rad].
+/// Returns the angle above the xy plane, in [-pi / 2, pi / 2] [rad].
 inline double elevationOf(const Eigen::Vector3d& point) {
   return std::atan2(point.z(), std::hypot(point.x(), point.y()));
 }

@@ -41,12 +41,12 @@ float Culling::farthestIn(int first_row, int last_row, int first_column, int las
 }
 
 bool Culling::mayPassThrough(const Eigen::Vector3d& centre, double ball_radius) const {
-  const double radius = ball_radius * (1.0 + 1e-6);  // rounding must not cut off a point of the ball
+  const double radius = ball_radius * (1.0 + 1e-6);  // rounding must not exclude a point of the ball
   const double nearest = std::max(0.0, centre.norm() - radius);
   if (nearest + tolerance_ >= double(image_.farthest())) return false;
   const PixelBox box = pixelsOf(image_.projection(), centre, radius);
   if (box.empty()) return false;
-  // visibilityOf() sees the neighbours of a point's pixel too.
+  // visibilityOf() also uses the neighbours of a point's pixel.
   const int first_row = std::max(0, box.first_row - 1), last_row = std::min(image_.rows() - 1, box.last_row + 1);
   int first = box.first_column - 1, last = box.last_column + 1;
   const int columns = image_.columns();

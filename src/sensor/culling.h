@@ -11,39 +11,39 @@
 
 namespace gaussmap::detail {
 
-/// Answers for whole balls of space what visibilityOf() answers for a point, but never says more than it knows: Yguel
-/// 2009, sec. 4.2. Built once per range image, which must stay as it is for as long as this lives.
+/// Tests balls of space as visibilityOf() tests points, but conservatively, Yguel 2009, sec. 4.2. It is built once per
+/// range image, and keeps a reference to it. The image must not change while this object exists.
 class Culling {
  public:
   explicit Culling(const RangeImage& image, const VisibilityOptions& options = {});
 
-  /// False only if no point of the ball (centre [m, sensor frame], radius [m]) is PassedThrough: all of it is out of
-  /// view, farther than all returns, or behind what the sensor saw.
+  /// Returns false only if no point of the ball (centre [m, sensor frame], radius [m]) is Visibility::PassedThrough.
+  /// The ball is then out of view, farther than all returns, or behind the surfaces that the sensor saw.
   bool mayPassThrough(const Eigen::Vector3d& centre, double radius) const;
 
  private:
   struct Level {
     int rows = 0, columns = 0;
-    std::vector<float> farthest;  // by rows: the largest of the nearest ranges, 0 where all is empty
+    std::vector<float> farthest;  // row by row: maximum of PixelRanges::nearest [m], 0 if all are empty
   };
   float farthestIn(int first_row, int last_row, int first_column, int last_column) const;
 
   const RangeImage& image_;
   double tolerance_;
-  std::vector<Level> levels_;  // finest first, each half as wide
+  std::vector<Level> levels_;  // finest first, each with half the rows and columns of the one before
 };
 
-/// What visitVisible() did.
+/// Numbers of cells in visitVisible().
 struct VisitCounts {
-  std::size_t tested = 0;   ///< cells of the coarser scales that were looked at
-  std::size_t visited = 0;  ///< cells of the finest scale handed on
+  std::size_t tested = 0;   ///< cells of the coarser scales that were tested
+  std::size_t visited = 0;  ///< cells of the finest scale that visit() was called for
 };
 
-/// Hands every finest cell that may be passed through to visit(cell). From the coarsest scale down: nothing under a
-/// cell is looked at that is out of view, out of reach or hidden. The finest cells themselves are not tested:
-/// visibilityOf() answers for them at the same price.
+/// Calls visit(cell) for every finest cell that beams may have passed through. It descends from the coarsest scale, and
+/// skips everything under a cell that is out of view, out of reach or hidden. It does not test the finest cells
+/// themselves, because a call of visibilityOf() costs the same.
 ///
-/// `cells` gives scales(), rootCount(), centre(cell, scale) [m, map frame], radius(scale) [m], and
+/// `cells` provides scales(), rootCount(), centre(cell, scale) [m, map frame], radius(scale) [m], and
 /// forChildren(cell, scale, body), which calls body(child) for the cells of scale - 1 under it.
 template <typename Cells, typename Visit>
 VisitCounts visitVisible(const Cells& cells, const Culling& culling, const Pose& sensor, const Visit& visit) {

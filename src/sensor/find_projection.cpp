@@ -20,7 +20,7 @@ struct Ray {
   double elevation;
 };
 
-/// Sectors of azimuth, about 4 degrees wide, told from each other without an arc tangent.
+/// Number of azimuth sectors, about 4 degrees wide. sectorOf() finds the sector of a point without an arc tangent.
 constexpr int kSectors = 96;
 int sectorOf(const Eigen::Vector3d& point) {
   const double width = std::abs(point.x()) + std::abs(point.y());
@@ -30,15 +30,15 @@ int sectorOf(const Eigen::Vector3d& point) {
   return std::min(static_cast<int>(0.25 * turn * kSectors), kSectors - 1);
 }
 
-/// What the beams of a scan look like.
+/// The directions of the beams of a scan.
 struct Beams {
-  std::vector<double> elevations;  // of all
-  std::vector<Ray> rays;           // of a large scan only those of some sectors: distances are the same all round
+  std::vector<double> elevations;  // of all beams [rad]
+  std::vector<Ray> rays;           // of a large scan only some sectors: the spacing is the same all around
 };
 
 Beams beamsOf(const std::vector<Eigen::Vector3d>& points) {
   constexpr std::size_t kEnough = 16000;
-  constexpr int kStride = 37;  // has no factor in common with kSectors: all come in turn, neighbours late
+  constexpr int kStride = 37;  // coprime to kSectors: reaches all sectors, and neighbouring ones late
   Beams beams;
   std::vector<const Eigen::Vector3d*> returns;
   std::vector<std::size_t> sizes(kSectors);
@@ -63,14 +63,14 @@ Beams beamsOf(const std::vector<Eigen::Vector3d>& points) {
   return beams;
 }
 
-/// Of values in any order; 0 if there are none.
+/// Returns a quantile of values in any order; 0 if there are none.
 double quantile(std::vector<double> values, double q) {
   if (values.empty()) return 0.0;
   return nthSmallest(values, static_cast<std::size_t>(q * static_cast<double>(values.size() - 1)));
 }
 
-/// Distances in elevation between points one above the other, that is within a slice of azimuth. Beams of one ring
-/// differ by less than `kSameRing`.
+/// Returns the differences in elevation between points one above the other, in the same slice of azimuth [rad]. Beams
+/// of one ring differ by less than `kSameRing`, and are left out.
 std::vector<double> verticalSteps(const std::vector<Ray>& rays) {
   constexpr double kSlice = 0.25 * kDegree, kSameRing = 0.05 * kDegree;
   std::vector<std::pair<int, double>> slices;
@@ -84,7 +84,7 @@ std::vector<double> verticalSteps(const std::vector<Ray>& rays) {
   return steps;
 }
 
-/// A smoothed histogram of elevations with its peaks.
+/// A smoothed histogram of elevations, and its peaks.
 class Elevations {
  public:
   Elevations(const std::vector<double>& elevations, double low, double high, double bin) : low_(low), bin_(bin) {
@@ -101,7 +101,8 @@ class Elevations {
       if (isPeak(i)) peaks_.push_back(static_cast<std::size_t>(i));
   }
 
-  /// Density in the usual gap between peaks, as a share of the lower of both: 0 between rings, 1 without any.
+  /// Returns the density in the median gap between two peaks, as a share of the lower peak. It is about 0 if the
+  /// elevations form rings, and 1 if there is no gap.
   double gapDensity() const {
     std::vector<double> gaps;
     for (std::size_t i = 1; i < peaks_.size(); ++i) {
@@ -144,7 +145,7 @@ std::vector<double> bordersBetween(const std::vector<double>& rings) {
   return borders;
 }
 
-/// The usual distance in azimuth between neighbours of the same ring.
+/// Returns the median difference in azimuth between neighbours of the same ring [rad].
 double azimuthStep(const std::vector<Ray>& rays, const std::vector<double>& rings) {
   constexpr double kSameBeam = 1e-5;
   std::vector<std::pair<std::size_t, double>> sorted;
@@ -180,7 +181,7 @@ std::optional<SphericalProjection> findSphericalProjection(const std::vector<Eig
 
   const std::vector<double> vertical = verticalSteps(beams.rays);
   const double usual = quantile(vertical, 0.5);
-  if (vertical.empty()) {  // one plane
+  if (vertical.empty()) {  // all beams in one plane
     const double step = azimuthStep(beams.rays, {0.5 * (low + high)});
     const double half = std::max(0.5 * (high - low), 0.5 * (step > 0.0 ? step : kDegree)) + 1e-6;
     return SphericalProjection{{0.5 * (low + high) - half, 0.5 * (low + high) + half}, columnsFor(step)};
@@ -201,7 +202,7 @@ std::optional<SphericalProjection> findSphericalProjection(const std::vector<Eig
 std::optional<PlanarProjection> findPlanarProjection(const std::vector<Eigen::Vector3d>& points, int columns) {
   if (columns < 2 || points.size() % static_cast<std::size_t>(columns) != 0) return std::nullopt;
   const int rows = static_cast<int>(points.size() / static_cast<std::size_t>(columns));
-  // column = fx x / z + cx and row = fy y / z + cy: two straight lines.
+  // Fits two straight lines: column = fx x / z + cx and row = fy y / z + cy.
   struct Line {
     double n = 0.0, s = 0.0, ss = 0.0, t = 0.0, st = 0.0;
     void add(double slope, double target) {

@@ -23,7 +23,7 @@ int rowOf(const SphericalProjection& projection, double elevation) {
   return static_cast<int>(std::upper_bound(borders.begin(), borders.end(), elevation) - borders.begin()) - 1;
 }
 
-/// Not wrapped: from -columns / 2 to columns * 3 / 2 for azimuths from -2 pi to 2 pi.
+/// Returns the column without wrapping: from -columns / 2 to columns * 3 / 2 for azimuths from -2 pi to 2 pi.
 int columnOf(const SphericalProjection& projection, double azimuth) {
   return static_cast<int>(std::floor((azimuth + kPi) / (2.0 * kPi) * projection.columns));
 }
@@ -65,7 +65,7 @@ PixelBox pixelsIn(const SphericalProjection& projection, const Eigen::Vector3d& 
   const double elevation = elevationOf(centre), width = std::asin(radius / range) + kRounding;
   box.first_row = std::max(0, rowOf(projection, elevation - width));
   box.last_row = std::min(rows - 1, rowOf(projection, elevation + width));
-  if (std::abs(elevation) + width >= kPi / 2.0) return box;  // seen across the pole: any azimuth
+  if (std::abs(elevation) + width >= kPi / 2.0) return box;  // the ball covers a pole: any azimuth
   const double azimuth = azimuthOf(centre);
   const double half = std::asin(std::min(1.0, std::sin(width) / std::cos(elevation))) + kRounding;
   box.first_column = columnOf(projection, azimuth - half);
@@ -77,8 +77,9 @@ PixelBox pixelsIn(const SphericalProjection& projection, const Eigen::Vector3d& 
   return box;
 }
 
-/// Where the tangents from the pinhole to the circle that the ball is in the plane (side, forward) meet side / forward.
-/// Nothing to leave out if the ball reaches behind the camera's plane.
+/// Finds the range of side / forward in which a ball is seen. In the plane (side, forward) the ball is a circle, and
+/// the range lies between its tangents through the pinhole. Returns false if the ball may reach behind the camera's
+/// plane: then nothing can be excluded.
 bool slopes(double side, double forward, double radius, double& low, double& high) {
   const double square = side * side + forward * forward - radius * radius;
   if (forward <= radius || square <= 0.0) return false;
@@ -114,7 +115,7 @@ void checkSize(int rows, int columns) {
 
 void check(const SphericalProjection& projection) {
   const auto& borders = projection.row_borders;
-  if (borders.size() < 2) throw std::invalid_argument("a spherical projection needs two row borders, one row");
+  if (borders.size() < 2) throw std::invalid_argument("a spherical projection needs at least 2 row borders");
   for (std::size_t i = 0; i < borders.size(); ++i)
     require(std::isfinite(borders[i]) && (i == 0 || borders[i] > borders[i - 1]), "row border " + std::to_string(i),
             borders[i], "must be finite and above the border before it");

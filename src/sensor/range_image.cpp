@@ -28,7 +28,7 @@ void RangeImage::add(const Eigen::Vector3d& point) {
   const std::optional<Pixel> pixel = pixelOf(projection_, point);
   if (!pixel) return;
   const auto range = static_cast<float>(point.norm());
-  if (!std::isfinite(range)) return;  // else all before it would be free
+  if (!std::isfinite(range)) return;  // an infinite range would declare everything before it free
   PixelRanges& ranges = pixels_[index(pixel->row, pixel->column)];
   ++returns_;
   filled_ += ranges.empty();
@@ -39,8 +39,7 @@ void RangeImage::add(const Eigen::Vector3d& point) {
 
 void RangeImage::noReturnIsFree(double range) {
   const auto limit = static_cast<float>(range);
-  require(limit > 0.0f && std::isfinite(limit), "range up to which no return is free", range,
-          "must be positive and finite");
+  require(limit > 0.0f && std::isfinite(limit), "range of noReturnIsFree()", range, "must be positive and finite");
   for (PixelRanges& pixel : pixels_)
     if (pixel.empty()) pixel = {limit, limit};
   farthest_ = std::max(farthest_, limit);

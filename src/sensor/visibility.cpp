@@ -10,15 +10,16 @@
 namespace gaussmap {
 namespace {
 
-/// Distance of a point from the surface through the ends a and b of two beams that runs square to the plane of both.
+/// Returns the distance of a point from the surface through the ends a and b of two beams [m]. The surface is
+/// perpendicular to the plane of the two beams.
 double distanceToSurface(const Eigen::Vector3d& point, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   const Eigen::Vector3d normal = (b - a).cross(a.cross(b));
   const double length = normal.norm();
   return length > 0.0 ? std::abs(normal.dot(point - a)) / length : (point - a).norm();
 }
 
-/// The least distance of a point from the surfaces between the pixels around it, one above the other; in an image of
-/// one row, one beside the other.
+/// Returns the minimum distance of a point from the surfaces between two pixels around it [m]. The two pixels lie one
+/// above the other; in an image of one row, side by side.
 double clearanceOf(const RangeImage& image, const Eigen::Vector3d& point, Pixel pixel) {
   double least = std::numeric_limits<double>::infinity();
   const auto consider = [&](int row_a, int column_a, int row_b, int column_b) {

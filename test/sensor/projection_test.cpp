@@ -245,8 +245,8 @@ TEST(CheckProjection, NamesWhatIsNotUsable) {
   EXPECT_EQ(refusalOf(lidar(8, -10, 10, 90)), "");
   EXPECT_EQ(refusalOf(camera()), "");
   using Spherical = SphericalProjection;
-  EXPECT_EQ(refusalOf(Spherical{{}, 5}), "a spherical projection needs two row borders, one row");
-  EXPECT_EQ(refusalOf(Spherical{{0.5}, 5}), "a spherical projection needs two row borders, one row");
+  EXPECT_EQ(refusalOf(Spherical{{}, 5}), "a spherical projection needs at least 2 row borders");
+  EXPECT_EQ(refusalOf(Spherical{{0.5}, 5}), "a spherical projection needs at least 2 row borders");
   EXPECT_EQ(refusalOf(Spherical{{0.0, 0.5, 0.5}, 5}),
             "row border 2 = 0.5: must be finite and above the border before it");
   EXPECT_EQ(refusalOf(Spherical{{0.0, kNaN}, 5}), "row border 1 = nan: must be finite and above the border before it");
