@@ -26,9 +26,9 @@ using namespace detail;
 
 namespace {
 
-constexpr std::size_t kTilesEncoded = 256;  // encoded together
+constexpr std::size_t kTilesEncoded = 256;  // number of tiles encoded at once
 
-/// What the metadata of a map file tell that is to be updated.
+/// The metadata of the map file to be updated.
 template <int D>
 struct Header {
   MapMetadata entries;
@@ -38,7 +38,7 @@ struct Header {
 
   Header(const std::filesystem::path& path, const Database& database) : entries(readEntries(database)) {
     options = readOptions<D>(path, entries);
-    if (entries.count("grows") + entries.count("occupancy") == 0) {  // of the first programs: only the tiles tell
+    if (entries.count("grows") + entries.count("occupancy") == 0) {  // first versions: only the tiles show this
       const GaussianMap<D> map = load<D>(path);
       entries["grows"] = map.acceptsScans() ? "1" : "0";
       entries["occupancy"] = map.hasOccupancy() ? "1" : "0";
@@ -60,11 +60,11 @@ struct Header {
   }
 };
 
-/// A tile as the file has it.
+/// A tile as it is in the file.
 template <int D>
 struct OldTile {
   Tile<D> all;
-  Tile<D> outside;  // cells of it that are not under the coarsest cells with new points
+  Tile<D> outside;  // its cells that are not under the coarsest cells with new points
 };
 template <int D>
 using OldTiles = std::map<CellKey<D>, OldTile<D>>;
@@ -79,7 +79,7 @@ bool sameTile(const Tile<D>& a, const Tile<D>& b) {
          std::equal(a.gaussians.begin(), a.gaussians.end(), b.gaussians.begin(), b.gaussians.end(), same);
 }
 
-/// The cells in the order that a saved map has them in.
+/// Sorts the cells into the order that save() uses.
 template <int D>
 Tile<D> sortedTile(const Tile<D>& tile, const MapOptions& options, int s) {
   std::vector<std::size_t> first(tile.keys.size() + 1, 0);
@@ -159,7 +159,7 @@ class Updater {
     return static_cast<std::size_t>(std::clamp(most, static_cast<double>(cells), 4294967295.0));
   }
 
-  /// Tiles of scale s with cells under a coarsest cell.
+  /// Adds the tiles of scale s that contain descendants of a coarsest cell.
   void addTilesUnder(const CellKey<D>& root, int s, std::set<CellKey<D>>& tiles) const {
     const std::int64_t span = grid_.cellsAlongSide(grid_.scales() - 1) / grid_.cellsAlongSide(s);
     CellKey<D> low, high;
@@ -172,13 +172,13 @@ class Updater {
     }
     low = tileOf<D>(low, span_);
     high = tileOf<D>(high, span_);
-    if (low == high)  // nearly always: a look into the table of tiles would take longer than all the rest
+    if (low == high)  // nearly always; a query would take longer than everything else
       tiles.insert(low);
     else
       for (const CellKey<D>& tile : tilesWithin<D>(database_, s, low, high)) tiles.insert(tile);
   }
 
-  /// Everything under the coarsest cells that get new points.
+  /// Reads the coarsest cells that get new points, with all their descendants.
   GaussianMap<D> readPart() {
     TileSelect<D> select(database_);
     std::vector<Tile<D>> part(old_.size());
@@ -212,7 +212,7 @@ class Updater {
     }
   }
 
-  /// Writes the tiles of a scale that are others now; returns how many.
+  /// Writes the tiles of a scale that have changed. Returns their number.
   std::size_t writeTiles(const GaussianMap<D>& after, int s) {
     const OldTiles<D>& old = old_[static_cast<std::size_t>(s)];
     const auto cut = cellsByTile<D>(after.scale(s), span_);
@@ -267,8 +267,8 @@ class Updater {
   std::vector<OldTiles<D>> old_;
 };
 
-/// Fills the part file with what the target holds. (std::filesystem::copy_file() has but "Input/output error" to say of
-/// a full disk.)
+/// Copies the target to the part file. (If the disk is full, std::filesystem::copy_file() reports
+/// only "Input/output error".)
 void copyTarget(AtomicFile& file) {
   std::ifstream source(file.target(), std::ios::binary);
   std::vector<char> piece(std::size_t{1} << 20);
@@ -287,8 +287,8 @@ MapUpdate updateMap(const std::filesystem::path& path, const MomentGrid<D>& adde
   if (options.budget)
     require(std::isfinite(*options.budget) && *options.budget >= 1.0, "budget", *options.budget,
             "must be at least 1 Gaussian per cell");
-  growingMapOptions<D>(path);  // complains before a part file is there
-  AtomicFile file(path);       // locked from here on: what is read now, nobody else replaces
+  growingMapOptions<D>(path);  // throws before a part file is created
+  AtomicFile file(path);       // from here on no other writer can replace the map
   copyTarget(file);
   MapUpdate update;
   {

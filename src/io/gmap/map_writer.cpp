@@ -15,7 +15,7 @@ namespace {
 constexpr const char* kFinalText =
     "means within 1/16 standard deviation along each axis, standard deviations within 5 % in every direction, weights "
     "and log-odds within 1/32";
-constexpr std::size_t kTilesAtOnce = 256;  // compressed together: bounds the memory of a save
+constexpr std::size_t kTilesAtOnce = 256;  // number of tiles compressed at once; limits the memory of a save
 
 template <int D>
 void writeTiles(const GaussianMap<D>& map, int s, const SaveOptions& options, TileInsert<D>& insert) {

@@ -11,7 +11,7 @@
 
 namespace gaussmap::detail {
 
-/// Decoded tiles, the least recently used of which go when they take more than `max_bytes`.
+/// Cache of decoded tiles. If they take more than `max_bytes`, the least recently used tiles are dropped.
 template <int D>
 class TileCache {
  public:
@@ -19,7 +19,7 @@ class TileCache {
 
   explicit TileCache(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
-  /// nullptr if the tile is not here.
+  /// Returns the tile, or nullptr if it is not in the cache.
   Entry find(int scale, const CellKey<D>& address) {
     const auto found = places_.find({scale, address});
     if (found == places_.end()) return nullptr;
@@ -27,7 +27,7 @@ class TileCache {
     return found->second->tile;
   }
 
-  /// Takes in a tile that is not here yet. One larger than the whole cache is not kept.
+  /// Adds a tile that is not in the cache yet. A tile that is larger than the whole cache is not kept.
   void insert(int scale, const CellKey<D>& address, Entry tile) {
     const std::size_t bytes = bytesOf(*tile);
     if (bytes > max_bytes_) return;
@@ -58,7 +58,7 @@ class TileCache {
   };
   std::size_t max_bytes_;
   std::size_t bytes_ = 0;
-  std::list<Item> by_use_;  // the last used one in front
+  std::list<Item> by_use_;  // the most recently used tile comes first
   std::map<Address, typename std::list<Item>::iterator> places_;
 };
 

@@ -20,7 +20,7 @@ constexpr std::uint64_t kMaxExpansion = 64;       // of a tile by decompression;
 constexpr std::uint64_t kMaxFinalExpansion = 16;  // numbers that are packed already
 constexpr std::uint64_t kHasMoments = 1, kHasLabels = 2, kHasLogOdds = 4, kFinal = 8;
 
-/// The numbers in front of the columns, 8 bytes each.
+/// Returns the numbers in front of the columns, 8 bytes each.
 template <int D>
 std::vector<std::uint64_t> headerOf(const TileAddress<D>& address, const MapOptions& options, std::size_t cells,
                                     std::size_t gaussians, std::uint64_t flags) {
@@ -62,7 +62,7 @@ void checkPositiveDefinite(const Matrix<D>& cov) {
     throw std::runtime_error("a covariance that is not positive definite");
 }
 
-/// Calls body(row, column, slot) over the upper triangle.
+/// Calls body(row, column, slot) for the upper triangle of a matrix.
 template <int D, typename Body>
 void forTriangle(const Body& body) {
   int slot = 0;

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kFarthest = 1e70;  // [m], see checkMesh()
 
-/// The values of a text, one element a line.
+/// Reads the values of an ASCII body, one element per line.
 class AsciiValues {
  public:
   AsciiValues(const std::filesystem::path& path, const PlyHeader& header, std::string_view bytes)
@@ -32,7 +32,8 @@ class AsciiValues {
     throw FileError(path_, "line " + std::to_string(line_) + ": " + what);
   }
 
-  /// Could so many elements be in the rest? Each value has a digit, and all but the very last one something behind it.
+  /// Returns true if the rest of the file can hold these elements. Each value takes a digit, and a separator unless it
+  /// is the last value.
   bool mayHold(const PlyElement& element) const {
     std::size_t bytes = 0;
     return !__builtin_mul_overflow(element.count, 2 * element.minWords(), &bytes) &&
@@ -60,7 +61,7 @@ class AsciiValues {
     const std::string_view word = takeWord();
     if (!parseNumber(word, value)) fail(quote(word) + " is not a number");
     if (type == PlyType::Float32 && std::abs(value) <= double{std::numeric_limits<float>::max()})
-      return double{static_cast<float>(value)};  // as a binary file would have it
+      return double{static_cast<float>(value)};  // the same value as in a binary file
     return value;
   }
   std::int64_t whole(PlyType) {
@@ -92,7 +93,7 @@ class AsciiValues {
   std::size_t line_;
 };
 
-/// The values of a binary file.
+/// Reads the values of a binary body.
 class BinaryValues {
  public:
   BinaryValues(const std::filesystem::path& path, const PlyHeader& header, std::string_view bytes)
@@ -158,7 +159,7 @@ class BinaryValues {
   const std::filesystem::path& path_;
   std::string_view bytes_;
   std::size_t place_;
-  std::size_t element_ = 0;  // where it begins
+  std::size_t element_ = 0;  // position of the current element [bytes]
   bool is_big_;
 };
 

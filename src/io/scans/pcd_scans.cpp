@@ -24,7 +24,7 @@ std::vector<std::filesystem::path> scansIn(const std::filesystem::path& director
   std::error_code error;
   std::filesystem::directory_iterator entry(directory, error);
   for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
-    // A link to nowhere or a pipe stays in the list: its reader says what is wrong with it.
+    // A broken link or a pipe stays in the list: the reader reports what is wrong with it.
     std::error_code ignored;
     if (isScanName(entry->path().filename()) && !entry->is_directory(ignored)) scans.push_back(entry->path());
   }
@@ -35,7 +35,8 @@ std::vector<std::filesystem::path> scansIn(const std::filesystem::path& director
   return scans;
 }
 
-/// A field element as the interface names it.
+/// Returns the name of a field element in the interface ScanReader: "intensity", or "normal[0]" if the field
+/// has several elements.
 std::string valueName(const PcdField& field, std::size_t element) {
   return field.count == 1 ? field.name : field.name + "[" + std::to_string(element) + "]";
 }
@@ -81,7 +82,7 @@ PcdReader openScan(const std::filesystem::path& path) {
   return reader;
 }
 
-/// A directory and a file in it, for example.
+/// Warns if a scan is given more than once, for example as a file and by its directory.
 void warnOfScansGivenTwice(const std::vector<std::filesystem::path>& paths, std::vector<std::string>& warnings) {
   std::set<std::filesystem::path> seen;
   for (const std::filesystem::path& path : paths) {
