@@ -10,7 +10,7 @@
 
 namespace gaussmap::app {
 
-/// How maps are moved: the same options for every command that moves maps.
+/// The options that all commands that move maps share.
 struct MotionInput {
   std::vector<std::string> transforms;  // "x y z qx qy qz qw"
   std::string file;
@@ -18,7 +18,8 @@ struct MotionInput {
 };
 void addMotionOptions(Command& command, MotionInput& input);
 
-/// The motion of each map, in their order; empty if no motion is given. Throws UsageError, FileError.
+/// Returns one motion per map, in the order of the maps; empty if no motion is given. Throws UsageError if an option is
+/// wrong, and FileError if the file of poses is.
 std::vector<RigidMotion<3>> motionsOf(const MotionInput& input, const std::vector<std::filesystem::path>& maps);
 
 }  // namespace gaussmap::app
