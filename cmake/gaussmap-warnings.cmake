@@ -3,5 +3,5 @@
 add_library(gaussmap_warnings INTERFACE)
 target_compile_options(gaussmap_warnings INTERFACE
   $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang>:-Wall -Wextra -Wpedantic -Wshadow -Wconversion>
-  # What -Wconversion does not mean to g++ either.
+  # With g++, -Wconversion does not include sign conversions, so clang does not warn of them either.
   $<$<COMPILE_LANG_AND_ID:CXX,Clang>:-Wno-sign-conversion>)

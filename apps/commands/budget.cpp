@@ -90,11 +90,11 @@ Option addLimitOptions(Command& command, BudgetInput& input) {
   const Option budget =
       command.number("--budget", input.budget, 1.0, 1e6, "Gaussians per occupied cell of a coarse scale, on average");
   command.texts("--max-gaussians", input.max_gaussians,
-                "maximum number of Gaussians per coarse scale: N, or SCALE=N for one scale; repeatable");
+                "maximum Gaussians per coarse scale: N, or SCALE=N for one scale; repeatable");
   command.text("--max-bytes", input.max_bytes, "maximum size of the map file [bytes], with suffix k, M or G");
   command
       .number("--max-error", input.max_error, 1e-9, 1e9,
-              "maximum distance from a coarse scale to the finest scale, for 95 % of the samples [m]")
+              "maximum distance of 95 % of a coarse scale's samples to the finest scale [m]")
       .hideDefault();
   command.exclusive({"--budget", "--max-gaussians", "--max-bytes", "--max-error"});
   return budget;
@@ -103,7 +103,7 @@ Option addLimitOptions(Command& command, BudgetInput& input) {
 void addCostOption(Command& command, BudgetInput& input) {
   command
       .choice("--cost", input.cost, Command::wordsOf(kCosts),
-              "cost of a merge (agglomerate): volume (default) = growth of volume; runnalls = loss of likelihood")
+              "merge cost: volume (default) = growth of volume, runnalls = loss of likelihood")
       .rare();
 }
 

@@ -183,9 +183,7 @@ void addClean(CLI::App& app) {
   command.text("--merged", options->merged, "write the static points as one cloud in the map frame (.pcd)");
   command.text("--removed", options->removed, "write the moving points as one cloud in the map frame (.pcd)");
   command.force(options->force, "replace existing outputs");
-  command
-      .text("--labels", options->labels,
-            "score the result against this field of the scans: 0 = static, other values = dynamic")
+  command.text("--labels", options->labels, "score against this field of the scans: 0 = static, other values = dynamic")
       .valueMayBeMissing("label");
   command.number("--resolution", options->options.resolution, 1e-3, 1e3, "side of the finest cells [m]");
   command

@@ -91,7 +91,7 @@ void addSampleOptions(Command& command, SampleOptions& samples) {
   command.number("--at-least", samples.at_least, 1, 1000000, "minimum number of samples per Gaussian").rare();
   command
       .choiceOf("--sampling", samples.share, kShares,
-                "number of samples of a Gaussian: in proportion to its volume, or to its weight (mass)")
+                "samples per Gaussian: in proportion to its volume, or to its weight (mass)")
       .rare();
   command
       .choiceOf("--samples-in", samples.bounds, kBounds,

@@ -53,14 +53,12 @@ PoseCovariance<3> covarianceIn(const std::string& text) {
 }  // namespace
 
 void addMotionOptions(Command& command, MotionInput& input) {
-  const Option transform =
-      command
-          .texts("--transform", input.transforms,
-                 "pose of the map frame in the target frame, \"x y z qx qy qz qw\" [m]; once per map to move")
-          .onePerUse();
+  const Option transform = command
+                               .texts("--transform", input.transforms,
+                                      "pose of the map in the target frame, \"x y z qx qy qz qw\" [m]; once per map")
+                               .onePerUse();
   command
-      .text("--transform-file", input.file,
-            "file of these poses, one line per map: TUM, KITTI, or the name of the map and its pose")
+      .text("--transform-file", input.file, "file of these poses, one line per map: TUM, KITTI, or map name and pose")
       .excludes(transform);
   command
       .text("--pose-covariance", input.covariance,

@@ -75,7 +75,7 @@ void addOptions(Command& command, Pcd2mapOptions& options) {
       .rare();
   command
       .flag("!--no-curves", options.budget.curves,
-            "do not measure the error curves of other budgets (shown by gaussmap info); faster")
+            "do not measure the error curves of other budgets (see gaussmap info); faster")
       .rare();
   command.threads(options.budget.refine.threads).rare();
   command.json(options.json);

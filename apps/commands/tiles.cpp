@@ -64,7 +64,9 @@ void addTiles(CLI::App& app) {
   command.output(options->output, "directory, or map file (.gmap), to write");
   command.number("--size", options->size, 1, 1000000, "side of a tile [m]");
   const Option scale = command.scale(options->scale, "scale to write, 0 = finest");
-  command.flag("--all-scales", options->all_scales, "write all scales, so that a map made of the tiles is the same")
+  command
+      .flag("--all-scales", options->all_scales,
+            "write all scales; a map made of the tiles then has the same coarse scales")
       .excludes(scale);
   command.json(options->json);
   command.onRun([options] { std::filesystem::is_directory(options->map) ? fromTiles(*options) : toTiles(*options); });

@@ -112,7 +112,7 @@ void addSimulate(CLI::App& app) {
   command.output(options->output, "directory to write to");
   command
       .number("--scans", options->world.scans, 1, 100000,
-              "number of scans along the path of the scene; default: 5 to 240, depending on the scene")
+              "number of scans along the path; default: 5 to 240, depending on the scene")
       .hideDefault();
   command.flag("--moving", options->world.moving,
                "add three driving cars and two walking pedestrians (street, avenue)");

@@ -65,13 +65,12 @@ void addFitterOptions(Command& command, FitterInput& input) {
                           or maximum (utilities of the paper, default: 0.06))"),
            command.number("--segment-cost", input.segment_cost, 0.0, 1e9,
                           "description-length: cost per segment [nat]; default: 3"),
-           command.number(
-               "--merge-ratio", input.merge_ratio, 0.0, 0.999999,
-               "utilities of the paper: merge up to this share (alpha) of the maximum variance; default: 0.5"),
+           command.number("--merge-ratio", input.merge_ratio, 0.0, 0.999999,
+                          "utilities of the paper: alpha, merge up to this share of sigma^2; default: 0.5"),
            command.numbers("--viewpoint", input.viewpoint, 3, -1e9, 1e9,
                            "viewpoint-dependent: x y r, more detail within the distance r of (x, y) [m]"),
            command.number("--view-radius", input.view_radius, 1e-3, 1e9,
-                          "viewpoint-dependent: more detail within this distance of the sensor [m]; default: 5"),
+                          "viewpoint-dependent: more detail this near to the sensor [m]; default: 5"),
            command.number("--view-scale", input.view_scale, 1e-3, 1.0,
                           "viewpoint-dependent: factor of --l-min in that area; default: 0.33"),
            command.number("--range-noise", options.noise.range, 0.0, 100.0,
@@ -86,7 +85,7 @@ void addFitterOptions(Command& command, FitterInput& input) {
                             or anywhere in the segment, as in the paper (segment))"),
            command.flag("--no-prune", input.no_prune, "keep segments that many rays pass through"),
            command.flag("--no-refine", input.no_refine,
-                        "do not optimise the whole map after the last scan; the utilities of the paper never do"),
+                        "do not optimise the whole map at the end; the utilities of the paper never do"),
            command.seed(options.particles.seed, "seed of the particles"),
        })
     option.group(kGroup);

@@ -60,7 +60,7 @@ void addLaserOptions(Command& command, LaserInput& input) {
       .required();
   addScanOptions(command, input.scans);
   command.numbers("--slice", input.slice, 2, -1e6, 1e6,
-                  "use only the points of 3-D scans between these two heights of the map frame [m]");
+                  "use only points of 3-D scans between these two heights in the map frame [m]");
   command.number("--position-noise", input.position_noise, 0.0, 100.0, "standard deviation of the poses' x and y [m]")
       .rare();
   command.number("--heading-noise", input.heading_noise, 0.0, 1.0, "standard deviation of the poses' heading [rad]")
