@@ -76,7 +76,7 @@ void addRestore(CLI::App& app) {
       .required();
   addMapOutput(command, *options);
   command.numbers("--box", options->box, 6, -1e12, 1e12,
-                  "only clusters whose mean lies in this box: x0 y0 z0 x1 y1 z1 [m]");
+                  "restore only clusters whose mean is in this box: x0 y0 z0 x1 y1 z1 [m]");
   addRunOptions(command, *options);
   command.onRun([options] { run(*options); });
 }
