@@ -7,7 +7,7 @@ class App;
 
 namespace gaussmap::app {
 
-// One function per command, called once by main.
+// One function per command. main() calls each function once.
 void addPcd2map(CLI::App& app);
 void addRefine(CLI::App& app);
 void addCompress(CLI::App& app);

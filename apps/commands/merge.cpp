@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap merge A B... -o OUT: several maps into one.
+// gaussmap merge A B... -o OUT: merges several maps into one.
 #include "gaussmap/editing/merge_maps.h"
 
 #include <cmath>
@@ -26,10 +26,9 @@ struct MergeCommand : MapTaskOptions {
 const Help kMergeHelp = {
     "Merge several maps into one",
     R"(gaussmap merge monday.gmap tuesday.gmap -o both.gmap --transform "12.5 -3 0 0 0 0.7071 0.7071")",
-    R"(If the maps were built from parts of the scans, the finest scale of the result equals that of a map of all
-scans, to the last bit. Maps that were moved or are final have no exact moments: they are merged as Gaussians,
-and --exact refuses them. Poses are those of the frame of the second map, the third, ... in the frame of the
-first map.)"};
+    R"(If the maps were built from parts of the scans, the finest scale of the result is exactly that of a map of all
+scans. Maps that were moved or are final have no exact moments. They are merged as Gaussians, and --exact refuses
+them. Give --transform once per map, except for the first map: its pose in the frame of the first map.)"};
 
 std::string gridOf(const GaussianMap<3>& map) {
   const MapOptions& options = map.options();
@@ -39,13 +38,13 @@ std::string gridOf(const GaussianMap<3>& map) {
 
 void requireExact(const GaussianMap<3>& map, const std::string& path, bool is_moved) {
   if (is_moved)
-    throw UsageError("--exact: a map that is moved or resampled merges as Gaussians; leave one of the two out");
+    throw UsageError("--exact: a moved or resampled map has no exact moments; leave out --exact to merge Gaussians");
   if (!map.acceptsScans())
     throw FileError(path, std::string(map.isCompressed() ? "is compressed" : "holds Gaussians only") +
-                              ": it has no exact moments to merge; leave out --exact to merge Gaussians");
+                              ", so it has no exact moments; leave out --exact to merge Gaussians");
 }
 
-/// Loads the maps one after the other, moves each into the frame and cells of the first, and merges it.
+/// Loads the maps one after the other, transforms each into the frame and grid of the first map, and merges it.
 GaussianMap<3> merged(const MergeCommand& command, const Motions& motions, MapTask& task) {
   const std::vector<std::string>& paths = command.maps;
   GaussianMap<3> merged = task.load(paths.front());
@@ -61,7 +60,7 @@ GaussianMap<3> merged(const MergeCommand& command, const Motions& motions, MapTa
       to.grid.reset();
     else if (!command.resample)
       throw FileError(paths[i], "has " + gridOf(next) + "; " + paths.front() + " has " + gridOf(merged) +
-                                    ": --resample sorts it into these cells");
+                                    "; use --resample to convert it to this grid");
     else if (command.exact)
       requireExact(next, paths[i], true);
     if (to.grid || !motions.poses.empty())
@@ -79,7 +78,7 @@ void run(const MergeCommand& command) {
   const std::size_t count = inputs.size();
   if (!command.motion.file.empty()) inputs.emplace_back(command.motion.file);
   MapTask task(command, inputs);
-  if (count < 2) throw UsageError("merge takes two maps at least");
+  if (count < 2) throw UsageError("merge needs at least two maps");
   const GaussianMap<3> map = merged(command, motionsOf(command.motion, to_move), task);
 
   Json step = {{"maps", count}, {"exact", map.acceptsScans()}};
@@ -107,7 +106,7 @@ void addMerge(CLI::App& app) {
   command.texts("maps", options->maps, "maps (.gmap, or PCD of Gaussians)").required();
   addMapOutput(command, *options);
   addMotionOptions(command, options->motion);
-  command.flag("--resample", options->resample, "sort maps of other cells into those of the first map");
+  command.flag("--resample", options->resample, "convert maps with another grid to the grid of the first map");
   command.flag("--exact", options->exact, "refuse maps that cannot be merged exactly");
   addRunOptions(command, *options);
   command.onRun([options] { run(*options); });

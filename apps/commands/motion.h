@@ -11,7 +11,7 @@
 
 namespace gaussmap::app {
 
-/// How maps are moved: the same options for every command that moves maps.
+/// The options that all commands that move maps share.
 struct MotionInput {
   std::vector<std::string> transforms;  // "x y z qx qy qz qw"
   std::string file;
@@ -20,11 +20,11 @@ struct MotionInput {
 void addMotionOptions(Command& command, MotionInput& input);
 
 struct Motions {
-  std::vector<Pose> poses;                   // of each map, in their order; empty if no motion is given
+  std::vector<Pose> poses;                   // one per map, in the order of the maps; empty if no motion is given
   std::optional<PoseCovariance> covariance;  // of every pose
 };
 
-/// Throws UsageError, FileError.
+/// Returns one motion per map. Throws UsageError if an option is wrong, and FileError if the file of poses is.
 Motions motionsOf(const MotionInput& input, const std::vector<std::filesystem::path>& maps);
 
 }  // namespace gaussmap::app

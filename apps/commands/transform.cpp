@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap transform MAP -o OUT --transform "x y z qx qy qz qw": a map in another frame.
+// gaussmap transform MAP -o OUT --transform "x y z qx qy qz qw": moves a map into another frame.
 #include <memory>
 
 #include "commands/commands.h"
@@ -20,9 +20,8 @@ struct TransformCommand : MapTaskOptions {
 const Help kTransformHelp = {
     "Move a map into another frame",
     R"(gaussmap transform room.gmap -o house.gmap --transform "4 0 2.7 0 0 0.7071 0.7071")",
-    R"(Every Gaussian is moved and put into the cell that contains its new mean. The result holds Gaussians without
-moments, so it accepts no more scans. Moving it back (--inverse) restores the means and weights of the finest
-scale.)"};
+    R"(Every Gaussian is moved into the cell that contains its new mean. The result has no moments, so it accepts no
+more scans. Moving it back (--inverse) restores the means and weights of the finest scale.)"};
 
 void run(const TransformCommand& command) {
   std::vector<std::filesystem::path> inputs = {command.map};
@@ -54,7 +53,7 @@ void addTransform(CLI::App& app) {
   Command command(app, "transform", kTransformHelp);
   addMapToMap(command, *options);
   addMotionOptions(command, options->motion);
-  command.flag("--inverse", options->inverse, "the inverse: from the target frame into the frame of the map");
+  command.flag("--inverse", options->inverse, "apply the inverse of the given pose");
   addRunOptions(command, *options);
   command.onRun([options] { run(*options); });
 }

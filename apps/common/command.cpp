@@ -22,7 +22,7 @@ bool isNumber(const std::string& text, Number& value) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
-/// A number from `low` to `high`; unlike CLI::Range it refuses NaN.
+/// Accepts a number from `low` to `high`. Unlike CLI::Range, it refuses NaN.
 CLI::Validator numberBetween(double low, double high) {
   std::ostringstream range;
   range << low << " to " << high;
@@ -30,12 +30,12 @@ CLI::Validator numberBetween(double low, double high) {
       [low, high, possible = range.str()](std::string& text) -> std::string {
         double value = 0.0;
         if (!isNumber(text, value)) return "'" + text + "' is not a number";
-        return value >= low && value <= high ? "" : text + " is not in the range of " + possible;
+        return value >= low && value <= high ? "" : text + " is not in the range " + possible;
       },
       range.str());
 }
 
-/// Processors that this process may use.
+/// Number of processors that this process may use.
 int processors() {
   cpu_set_t set;
   return sched_getaffinity(0, sizeof set, &set) == 0
@@ -43,7 +43,7 @@ int processors() {
              : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-/// TBB warns on stderr if it is asked for more threads than there are processors.
+/// Limits the threads to the number of processors, because TBB warns on stderr if there are more.
 std::string limitThreads(std::string& text) {
   int threads = 0;
   if (isNumber(text, threads) && threads <= 1024) text = std::to_string(std::min(threads, processors()));
@@ -208,7 +208,7 @@ Option Command::seed(std::uint64_t& value, const std::string& help) {
 }
 
 Option Command::threads(int& value) {
-  return Option(app_->add_option("--threads", value, "threads, 0 = all; the result does not depend on it")
+  return Option(app_->add_option("--threads", value, "number of threads, 0 = all cores")
                     ->check(CLI::Range(0, 1024))
                     ->transform(CLI::Validator(limitThreads, ""))
                     ->capture_default_str());

@@ -8,8 +8,8 @@
 
 namespace gaussmap::app {
 
-/// Lays out the help of a command: --help shows the options of the default group and the example, --help-all
-/// everything.
+/// Returns the formatter of a command's help. --help shows the options of the default group and the example; --help-all
+/// shows everything.
 std::shared_ptr<CLI::Formatter> makeHelpFormatter(const Help& help);
 
 }  // namespace gaussmap::app

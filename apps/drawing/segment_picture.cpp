@@ -10,14 +10,15 @@
 namespace gaussmap::app {
 namespace {
 
-// All in pixels.
+// Sizes in pixels.
 constexpr double kMaxWidth = 1400, kMaxHeight = 1400, kSegmentMargin = 16, kSegmentLegend = 44, kSegmentFont = 11;
-constexpr double kBand = 5;  // on the free side
+constexpr double kBand = 5;  // width of the band on the free side
 
-/// Okabe and Ito 2008: told apart by everybody, and on white paper.
+/// Okabe and Ito 2008: colours that colour-blind people can also distinguish, on a white background.
 constexpr const char* kChainColours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
 
-/// The window around everything, at least one metre wide and high: a map may be a single point.
+/// Returns the view of everything that is drawn. It is at least one metre wide and high, because a map can be a single
+/// point.
 PlanView viewOf(const SegmentMap& map, const SegmentPicture& picture) {
   constexpr double kMinSide = 1.0;  // [m]
   Box<2> window = emptyBox();
@@ -33,7 +34,7 @@ PlanView viewOf(const SegmentMap& map, const SegmentPicture& picture) {
   return {{middle - half, middle + half}, scale, kSegmentMargin};
 }
 
-/// "x y" in pixels.
+/// Prints "x y" of a point in pixels.
 struct At {
   const PlanView& view;
   const Vector<2>& point;
