@@ -67,6 +67,7 @@ void addMotionOptions(Command& command, MotionInput& input) {
             "covariance of these poses, which widens the Gaussians: the 6 x 6 numbers of x y z [m] and rotations about "
             "x y z [rad], or the 6 of the diagonal, in quotes")
       .rare();
+  command.files({"--transform-file"});
 }
 
 std::vector<RigidMotion<3>> motionsOf(const MotionInput& input, const std::vector<std::filesystem::path>& maps) {

@@ -76,6 +76,8 @@ void addRestore(CLI::App& app) {
   command.numbers("--box", options->box, 6, -1e12, 1e12,
                   "only clusters whose mean lies in this box: x0 y0 z0 x1 y1 z1 [m]");
   addRunOptions(command, *options);
+  command.files({"map"}, {".gmap"});
+  command.files({"removed"}, {".pcd"});
   command.onRun([options] { run(*options); });
 }
 

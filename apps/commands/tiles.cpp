@@ -65,6 +65,8 @@ void addTiles(CLI::App& app) {
   command.flag("--all-scales", options->all_scales, "write all scales, so that the way back rebuilds nothing")
       .excludes(scale);
   command.json(options->json);
+  command.files({"map"}, {".gmap", ".pcd"});
+  command.files({"--output"}, {".gmap"});
   command.onRun([options] { std::filesystem::is_directory(options->map) ? fromTiles(*options) : toTiles(*options); });
 }
 
