@@ -21,7 +21,7 @@ std::string explain(const CLI::ParseError& error, const CLI::App& app) {
   const auto used = app.get_subcommands();
   if (used.empty()) {
     std::string commands;
-    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App* one) { return !one->get_group().empty(); }))
       commands += (commands.empty() ? "" : ", ") + command->get_name();
     const std::vector<std::string> words = app.remaining();
     return (words.empty() ? "no command given" : "'" + words.front() + "' is not a command") + ": use one of " +
@@ -73,6 +73,8 @@ int main(int argc, char** argv) {
   addDraw(app);
   addSegments(app);
   addView(app);
+  addCompletion(app);
+  addReference(app);
   try {
     app.parse(argc, argv);
     std::cout.flush();

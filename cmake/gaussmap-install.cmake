@@ -20,6 +20,13 @@ if(GAUSSMAP_BUILD_APPS)
   if(GAUSSMAP_BUILD_VIEWER)
     install(TARGETS gaussmap_view RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})  # `gaussmap view` expects it in its folder
   endif()
+  if(NOT CMAKE_CROSSCOMPILING)
+    install(DIRECTORY ${PROJECT_BINARY_DIR}/apps/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+    set(written ${PROJECT_BINARY_DIR}/apps/completions)
+    install(FILES ${written}/gaussmap DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+    install(FILES ${written}/_gaussmap DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+    install(FILES ${written}/gaussmap.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+  endif()
 endif()
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 

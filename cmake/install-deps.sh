@@ -15,7 +15,8 @@ packages=(
 )
 case "${1:-}" in
   "") ;;
-  --checks) packages+=(git clang libclang-rt-14-dev clang-format clang-tidy cppcheck) ;;  # sanitizers, fuzzers, lint
+  --checks) packages+=(git clang libclang-rt-14-dev clang-format clang-tidy cppcheck  # sanitizers, fuzzers, lint
+                        mandoc zsh fish) ;;  # man pages and completions
   *) echo "usage: cmake/install-deps.sh [--checks]" >&2; exit 2 ;;
 esac
 

@@ -193,6 +193,8 @@ void addClean(CLI::App& app) {
   addScanOptions(command, options->input);
   command.threads(options->options.evidence.threads);
   command.json(options->json);
+  command.folders({"--output"});
+  command.files({"--merged", "--removed"}, {".pcd"});
   command.onRun([options] { run(*options); });
 }
 

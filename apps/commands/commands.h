@@ -28,5 +28,7 @@ void addSimulate(CLI::App& app);
 void addDraw(CLI::App& app);
 void addSegments(CLI::App& app);
 void addView(CLI::App& app);
+void addCompletion(CLI::App& app);
+void addReference(CLI::App& app);
 
 }  // namespace gaussmap::app

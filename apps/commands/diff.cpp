@@ -82,6 +82,8 @@ void addDiff(CLI::App& app) {
       .rare();
   command.threads(options->diff.threads);
   command.json(options->json);
+  command.files({"first", "second"}, {".gmap", ".pcd"});
+  command.files({"--output"}, {".pcd"});
   command.onRun([options] { run(*options); });
 }
 

@@ -103,6 +103,8 @@ void addDraw(CLI::App& app) {
   command.number("--sigma", options->sigma, 0.01, 100.0, "half axes of the ellipses, in standard deviations");
   command.numbers("--box", options->box, 4, -1e9, 1e9, "draw only the part from x0 y0 to x1 y1 [m]")
       .type("X0 Y0 X1 Y1");
+  command.files({"maps"}, {".gmap", ".pcd"});
+  command.files({"--output"}, {".svg"});
   command.onRun([options] { run(*options); });
 }
 

@@ -99,6 +99,7 @@ void addExport(CLI::App& app) {
   command.choice("--color", options->colour, {"height", "normal"}, "colours of a .ply: height (default), normal");
   command.number("--sigma", options->sigma, 0.01, 100.0,
                  "half axes of the ellipsoids of a .ply, in standard deviations; default 2");
+  command.files({"output"}, {".pcd", ".ply", ".vtp", ".csv"});
   command.onRun([options] { run(*options); });
 }
 

@@ -129,6 +129,9 @@ void addHausdorff(CLI::App& app) {
   addScanOptions(command, options->reference);
   command.threads(options->samples.threads);
   command.json(options->json);
+  command.files({"subject"}, {".gmap", ".pcd"});
+  command.files({"reference"}, {".pcd", ".ply", ".gmap"});
+  command.files({"--write-errors"}, {".pcd"});
   command.onRun([options] { run(*options); });
 }
 

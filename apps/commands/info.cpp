@@ -213,6 +213,7 @@ void addInfo(CLI::App& app) {
   command.text("--plot", options->plot.path, "draw the error against the number of Gaussians (.svg)");
   command.force(options->plot.force, "replace an existing plot");
   command.json(options->json);
+  command.files({"--plot"}, {".svg"});
   command.onRun([options] { run(*options); });
 }
 

@@ -109,6 +109,7 @@ void addMerge(CLI::App& app) {
   command.flag("--resample", options->resample, "convert maps with another grid to the grid of the first map");
   command.flag("--exact", options->exact, "refuse maps that cannot be merged exactly");
   addRunOptions(command, *options);
+  command.files({"maps"}, {".gmap", ".pcd"});
   command.onRun([options] { run(*options); });
 }
 

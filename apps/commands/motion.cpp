@@ -64,6 +64,7 @@ void addMotionOptions(Command& command, MotionInput& input) {
             R"(covariance of these poses, which widens the Gaussians: in quotes, 6 x 6 numbers for x y z [m]
             and the rotations about x y z [rad], or the 6 numbers of the diagonal)")
       .rare();
+  command.files({"--transform-file"});
 }
 
 Motions motionsOf(const MotionInput& input, const std::vector<std::filesystem::path>& maps) {

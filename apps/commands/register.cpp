@@ -134,6 +134,8 @@ void addRegister(CLI::App& app) {
       .rare();
   command.threads(options->options.threads);
   command.json(options->json);
+  command.files({"inputs"}, {".pcd", ".gmap"});
+  command.files({"--tum"});
   command.onRun([options] { run(*options); });
 }
 

@@ -78,6 +78,8 @@ void addRestore(CLI::App& app) {
   command.numbers("--box", options->box, 6, -1e12, 1e12,
                   "restore only clusters whose mean is in this box: x0 y0 z0 x1 y1 z1 [m]");
   addRunOptions(command, *options);
+  command.files({"map"}, {".gmap"});
+  command.files({"removed"}, {".pcd"});
   command.onRun([options] { run(*options); });
 }
 

@@ -12,6 +12,7 @@ namespace gaussmap::app {
 
 void addScanPaths(Command& command, ScanInput& input) {
   command.texts("scans", input.paths, "PCD files, or directories of PCD files (in natural order)").required();
+  command.files({"scans"}, {".pcd"});
 }
 
 void addScanOptions(Command& command, ScanInput& input) {
@@ -20,6 +21,7 @@ void addScanOptions(Command& command, ScanInput& input) {
   command.choice("--frame", input.frame, {"sensor", "map"}, "frame of the points in the files");
   command.number("--max-range", input.max_range, 0.0, 1e9,
                  "drop points farther from the sensor than this [m]; 0 = no limit");
+  command.files({"--poses"});
 }
 
 PcdScans openScans(const ScanInput& input) {

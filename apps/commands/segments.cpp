@@ -138,6 +138,10 @@ void addSegments(CLI::App& app) {
   command.text("--walls", options->walls, "score the map against true walls (walls.pcd of simulate plan)");
   addFitterOptions(command, options->fitter);
   command.json(options->json);
+  command.files({"--output"}, {".pcd", ".svg", ".geojson", ".csv"});
+  command.files({"--stats"}, {".csv"});
+  command.files({"--evaluate"}, {".log", ".log.gz", ".pcd"});
+  command.files({"--walls"}, {".pcd"});
   command.onRun([command, options] { run(command, *options); });
 }
 

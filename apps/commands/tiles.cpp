@@ -69,6 +69,8 @@ void addTiles(CLI::App& app) {
             "write all scales; a map made of the tiles then has the same coarse scales")
       .excludes(scale);
   command.json(options->json);
+  command.files({"map"}, {".gmap", ".pcd"});
+  command.files({"--output"}, {".gmap"});
   command.onRun([options] { std::filesystem::is_directory(options->map) ? fromTiles(*options) : toTiles(*options); });
 }
 

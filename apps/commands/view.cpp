@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "commands/commands.h"
+#include "commands/view_options.h"
 #include "common/command.h"
 
 namespace gaussmap::app {
@@ -31,7 +32,7 @@ void startViewer(const std::vector<std::string>& arguments) {
 }  // namespace
 
 void addView(CLI::App& app) {
-  Command(app, "view", {"Show a map in a window, or save a picture (--png)", "", ""}).passOn(startViewer);
+  Command(app, "view", {kViewSummary, "", ""}).passOn(startViewer);
 }
 
 }  // namespace gaussmap::app

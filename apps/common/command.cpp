@@ -192,6 +192,7 @@ Option Command::choice(const std::string& name, const std::vector<std::string>& 
 
 void Command::map(std::string& path) {
   text("map", path, "map (.gmap, or PCD of Gaussians)").required();
+  files({"map"}, {".gmap", ".pcd"});
 }
 
 void Command::output(Output& output, const std::string& help) {
@@ -226,6 +227,20 @@ void Command::exclusive(const std::vector<std::string>& names) {
 
 void Command::excludes(const std::string& name, const std::vector<std::string>& others) {
   for (const std::string& other : others) app_->get_option(name)->excludes(app_->get_option(other));
+}
+
+void Command::files(const std::vector<std::string>& names, const std::vector<std::string>& endings) {
+  // A check that accepts everything and whose name option_tree.cpp reads. As a type, errors would quote it.
+  const CLI::Validator note([](std::string&) { return std::string(); }, "", CLI::detail::join(endings, " "));
+  for (const std::string& name : names) app_->get_option(name)->type_name("FILE")->check(note);
+}
+
+void Command::folders(const std::vector<std::string>& names) {
+  for (const std::string& name : names) app_->get_option(name)->type_name("DIR");
+}
+
+void Command::hide() {
+  app_->group("");
 }
 
 bool Command::isGiven(const std::string& name) const {

@@ -106,10 +106,17 @@ class Command {
   void exclusive(const std::vector<std::string>& names);
   /// The option cannot be combined with any of the others.
   void excludes(const std::string& name, const std::vector<std::string>& others);
+  /// The values of these options are names of files or directories. `endings`, such as ".gmap", are those that the
+  /// completion of the shell offers; empty: all files.
+  void files(const std::vector<std::string>& names, const std::vector<std::string>& endings = {});
+  /// The values of these options are names of directories.
+  void folders(const std::vector<std::string>& names);
   bool isGiven(const std::string& name) const;
   /// The name of an option of this group that was given; empty if none was given.
   std::string givenOf(const std::string& group) const;
 
+  /// Leaves the command out of the list of commands.
+  void hide();
   /// Sets the function that runs the command after its options have been read.
   void onRun(const std::function<void()>& run);
   /// Passes all words after the name of the command, including --help, to `run` unparsed.

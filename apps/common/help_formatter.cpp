@@ -8,7 +8,6 @@ namespace {
 
 constexpr std::size_t kColumn = 32;  // first column of the descriptions
 constexpr std::size_t kLineWidth = 110;
-constexpr const char* kCommonGroup = "Options";  // the default group of CLI11
 
 /// Breaks the text at white space into lines of at most `width` characters. A longer word gets its own line.
 std::string wrapped(const std::string& text, std::size_t width) {
@@ -26,20 +25,17 @@ std::string wrapped(const std::string& text, std::size_t width) {
   return lines;
 }
 
-/// "FLOAT", or the list of possible values: "{sensor,map}". Drops the texts of the validators, which CLI11 appends.
+/// Returns "FLOAT", or the list of possible values: "{sensor,map}".
 std::string typeOf(const CLI::Option& option) {
-  const std::string type = option.get_type_name();
-  const std::size_t open = type.find('{'), close = type.find('}');
-  if (open == std::string::npos || close == std::string::npos) return type.substr(0, type.find(':'));
-  std::string values = type.substr(open, close - open + 1);
-  for (std::size_t arrow = values.find("->"); arrow != std::string::npos; arrow = values.find("->"))
-    values.erase(arrow, values.find_first_of(",}", arrow) - arrow);
-  return values;
+  const std::vector<std::string> choices = choicesOf(option);
+  return choices.empty() ? valueNameOf(option) : "{" + CLI::detail::join(choices, ",") + "}";
 }
 
 class HelpFormatter : public CLI::Formatter {
  public:
   explicit HelpFormatter(Help help) : help_(std::move(help)) { column_width(kColumn); }
+
+  const Help& help() const { return help_; }
 
   std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
     const bool is_part = mode == CLI::AppFormatMode::Sub;  // one command within `gaussmap --help-all`
@@ -90,6 +86,25 @@ class HelpFormatter : public CLI::Formatter {
 
 std::shared_ptr<CLI::Formatter> makeHelpFormatter(const Help& help) {
   return std::make_shared<HelpFormatter>(help);
+}
+
+Help helpOf(const CLI::App& app) {
+  const auto* const formatter = dynamic_cast<const HelpFormatter*>(app.get_formatter().get());
+  return formatter != nullptr ? formatter->help() : Help{app.get_description(), "", ""};
+}
+
+std::string valueNameOf(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  return type.substr(0, type.find(':'));
+}
+
+std::vector<std::string> choicesOf(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  const std::size_t open = type.find('{'), close = type.find('}', open);
+  if (open == std::string::npos || close == std::string::npos) return {};
+  std::vector<std::string> choices = CLI::detail::split(type.substr(open + 1, close - open - 1), ',');
+  for (std::string& choice : choices) choice = choice.substr(0, choice.find("->"));  // of named values
+  return choices;
 }
 
 }  // namespace gaussmap::app

@@ -126,6 +126,7 @@ void addSimulate(CLI::App& app) {
                  "maximum range of the sensor [m]; default: 60, street 80, plan 30");
   command.seed(options->seed, "seed of the noise");
   command.threads(options->threads);
+  command.folders({"--output"});
   command.onRun([options] { run(*options); });
 }
 

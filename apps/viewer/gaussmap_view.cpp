@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "commands/scan_input.h"
-#include "common/command.h"
+#include "commands/view_options.h"
 #include "common/report.h"
 #include "common/signals.h"
 #include "gaussmap/io/export/segment_files.h"
@@ -20,23 +20,9 @@ using namespace detail;
 
 namespace {
 
-struct ViewCommand {
-  std::string map;
-  ScanInput cloud;
-  std::optional<int> scale;
-  bool leaves = false;
-  std::string colour;  // empty: the default
-  std::string up = "z", from = "iso", size = "1200x800";
-  std::vector<double> at;
-  Output png;
-  ViewOptions view;
-};
-
 const std::map<std::string, ColourBy> kColours = {{"scale", ColourBy::Scale},   {"height", ColourBy::Height},
                                                   {"normal", ColourBy::Normal}, {"weight", ColourBy::Weight},
                                                   {"error", ColourBy::Error},   {"occupancy", ColourBy::Occupancy}};
-const std::map<std::string, Vector<3>> kUp = {{"x", {1, 0, 0}},   {"y", {0, 1, 0}},   {"z", {0, 0, 1}},
-                                              {"-x", {-1, 0, 0}}, {"-y", {0, -1, 0}}, {"-z", {0, 0, -1}}};
 
 /// Reads `count` numbers such as "1,2.5,-3" or "800x600". Returns an empty vector for any other text.
 template <typename Number>
@@ -96,7 +82,7 @@ void setScale(const ViewCommand& command, const GaussianMap<3>& map, ViewOptions
 void run(ViewCommand command) {
   const auto [width, height] = sizeOf(command);
   ViewOptions view = command.view;
-  view.up = kUp.at(command.up);
+  view.up = kUpAxes.at(command.up);
   const double zoom = view.view.zoom;
   view.view = viewPoint(command, view.up);
   view.view.zoom = zoom;
@@ -125,28 +111,6 @@ void run(ViewCommand command) {
             << humanBytes(std::filesystem::file_size(command.png.path)) << '\n';
 }
 
-void addOptions(Command& command, ViewCommand& options) {
-  command.text("map", options.map, "map (.gmap, or PCD of Gaussians or of segments)").required();
-  command.texts("cloud", options.cloud.paths, "PCD files or directories, drawn over the map");
-  addScanOptions(command, options.cloud);
-  command.scale(options.scale, "scale to show, 0 = finest; default: the finest scale with at most 200,000 Gaussians");
-  command.flag("--leaves", options.leaves, "show all leaves of a compressed map");
-  command.choice("--color", options.colour, {"height", "scale", "normal", "weight", "occupancy", "error"},
-                 "colour of the Gaussians, default: height; error = distance to CLOUD, or else to the finer scales");
-  command.number("--sigma", options.view.sigma, 0.01, 100.0, "half axes of the ellipsoids, in standard deviations");
-  command.flag("--cells", options.view.cells, "draw the occupied cells as boxes");
-  command.flag("--hierarchy", options.view.hierarchy,
-               "draw all scales, one above the other, with links to the children");
-  command.choice("--up", options.up, Command::wordsOf(kUp), "axis that points up");
-  command.text("--view", options.from, "top, iso, or the direction x,y,z from the map to the eye");
-  command.number("--zoom", options.view.view.zoom, 0.01, 1000.0, "magnification, 1 = the whole map");
-  command.numbers("--at", options.at, 3, -1e9, 1e9, "point to look at [m]; default: the middle of the map")
-      .type("X Y Z");
-  command.text("--png", options.png.path, "save a picture instead of opening a window; needs no display");
-  command.text("--size", options.size, "size of the picture or window [pixels]");
-  command.force(options.png.force, "replace an existing picture");
-}
-
 }  // namespace
 }  // namespace gaussmap::app
 
@@ -154,12 +118,9 @@ int main(int argc, char** argv) {
   using namespace gaussmap::app;
   handleSignals("gaussmap");
   CLI::App app("", "gaussmap view");
-  app.set_help_all_flag("--help-all", "show all options and the keys");
-  Command command(app, {"Show a map in a window, or save a picture (--png)",
-                        "gaussmap view street.gmap --scale 1 --color normal --png street.png --size 1600x900",
-                        "Keys:\n" + gaussmap::Viewer::helpText()});
+  app.set_help_all_flag("--help-all", kViewHelpAll);
   ViewCommand options;
-  addOptions(command, options);
+  addViewOptions(app, options);
   try {
     app.parse(argc, argv);
     run(options);

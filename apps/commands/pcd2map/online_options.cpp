@@ -41,6 +41,8 @@ void addOnlineOptions(Command& command, OnlineInput& input) {
            command.text("--removed", input.removed, "PCD file to write: the deleted clusters and their evidence"),
        })
     option.needs(online).group("With --online");
+  command.files({"--stats"}, {".csv"});
+  command.files({"--removed"}, {".pcd"});
 }
 
 void checkOnline(const OnlineInput& input, const BudgetInput& budget, const Output& map,

@@ -58,6 +58,7 @@ void addLaserOptions(Command& command, LaserInput& input) {
       .texts("scans", input.scans.paths,
              "CARMEN logs (.log, .log.gz), or PCD scans of a planar laser, or directories of them")
       .required();
+  command.files({"scans"}, {".log", ".log.gz", ".pcd"});
   addScanOptions(command, input.scans);
   command.numbers("--slice", input.slice, 2, -1e6, 1e6,
                   "use only points of 3-D scans between these two heights in the map frame [m]");
