@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs, builds, and runs the main job on a simulated street: scans -> maps of several budgets and both methods ->
-# how far the coarsest scale of each is from the truth. Writes demo/street.gmap, demo/curve.svg (the error against the
-# number of Gaussians) and, from above with one and with four Gaussians per cell, demo/map.svg (the street) and
-# demo/crossing.svg (60 m of it). Usage: apps/demo.sh
+# Installs the packages, builds gaussmap, and runs the main job on a simulated street. It builds maps with several
+# budgets and both methods, and prints the distance of each map's coarsest scale from the true surfaces. It writes
+# demo/street.gmap, demo/curve.svg (error against the number of Gaussians), and two pictures from above with one and
+# with four Gaussians per cell: demo/map.svg (the street) and demo/crossing.svg (60 m of it).
+# Usage: apps/demo.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -20,7 +21,7 @@ echo
 "$gaussmap" pcd2map "$folder/scans" -o "$folder/one.gmap" --budget 1 | sed "s|$folder/||"
 
 echo
-echo "The 10 m cells: how far samples of the map lie from the truth [m]"
+echo "Cells of 10 m: distances from samples of the map to the true surfaces [m]"
 echo
 printf '%-34s %9s %10s %8s %8s %8s\n' "" Gaussians "file size" "99 %" "95 %" mean
 row() {  # title, map
@@ -35,8 +36,8 @@ for method in insert agglomerate; do
   for budget in 2 3.4 4; do
     "$gaussmap" refine "$folder/one.gmap" -o "$folder/$method$budget.gmap" --method $method --budget $budget >/dev/null
     case $method in
-      insert) title="$budget x, the paper's insertion" ;;
-      *) title="$budget x, agglomeration" ;;
+      insert) title="$budget per cell, insertion" ;;
+      *) title="$budget per cell, agglomeration" ;;
     esac
     row "$title" "$folder/$method$budget.gmap"
   done

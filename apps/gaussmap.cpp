@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The command line: parses, runs one command, turns every error into one line on stderr and an exit code.
+// The command line: parses the options, runs one command, and turns every error into one line on stderr and an exit
+// code.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
@@ -15,25 +16,25 @@ namespace gaussmap::app {
 
 namespace {
 
-/// What CLI11 says, in words that a newcomer understands, and where to read on.
+/// Returns an error of CLI11 in plain words. The text ends with the help command to run next.
 std::string explain(const CLI::ParseError& error, const CLI::App& app) {
   const auto used = app.get_subcommands();
   if (used.empty()) {
     std::string commands;
-    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App* one) { return !one->get_group().empty(); }))
       commands += (commands.empty() ? "" : ", ") + command->get_name();
     const std::vector<std::string> words = app.remaining();
-    return (words.empty() ? "no command given" : "'" + words.front() + "' is no command") + ": take one of " +
+    return (words.empty() ? "no command given" : "'" + words.front() + "' is not a command") + ": use one of " +
            commands + " (see gaussmap --help)";
   }
   std::string text = error.what();
   const std::string unreadable = "Could not convert: ";
   if (text.compare(0, unreadable.size(), unreadable) == 0)
-    text = text.substr(unreadable.size()) + " cannot be read as a number of the kind asked for";
+    text = text.substr(unreadable.size()) + " is not a number that this option accepts";
   return text + " (see gaussmap " + used.front()->get_name() + " --help)";
 }
 
-/// One line on stderr, whatever file names are made of. Returns the exit code.
+/// Prints one line on stderr. Control characters (file names can contain them) become '?'. Returns the exit code.
 int complain(std::string text, int code) {
   for (char& c : text)
     if (static_cast<unsigned char>(c) < 0x20) c = '?';
@@ -49,7 +50,7 @@ int main(int argc, char** argv) {
   handleSignals("gaussmap");
   CLI::App app("Compact multi-scale Gaussian maps from range scans", "gaussmap");
   app.set_version_flag("--version", "gaussmap " GAUSSMAP_VERSION);
-  app.set_help_all_flag("--help-all", "show all options, and explanations");
+  app.set_help_all_flag("--help-all", "show all options and explanations");
   app.require_subcommand(1);
   app.footer("Example: gaussmap pcd2map scans/ -o street.gmap && gaussmap info street.gmap");
   addPcd2map(app);
@@ -72,10 +73,12 @@ int main(int argc, char** argv) {
   addDraw(app);
   addSegments(app);
   addView(app);
+  addCompletion(app);
+  addReference(app);
   try {
     app.parse(argc, argv);
     std::cout.flush();
-    if (!std::cout || std::fflush(stdout) != 0) throw std::runtime_error("standard output cannot be written");
+    if (!std::cout || std::fflush(stdout) != 0) throw std::runtime_error("cannot write to standard output");
     return 0;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
@@ -83,10 +86,10 @@ int main(int argc, char** argv) {
   } catch (const UsageError& error) {
     return complain(error.what(), 2);
   } catch (const std::bad_alloc&) {
-    return complain("out of memory: take coarser cells (--resolution) or fewer scans", 1);
+    return complain("out of memory: use coarser cells (--resolution) or fewer scans", 1);
   } catch (const std::exception& error) {
     const std::string what = error.what();
-    const bool no_thread = what.compare(0, 14, "pthread_create") == 0;  // as TBB words it
-    return complain(what + (no_thread ? ": no thread can be started, try --threads 1" : ""), 1);
+    const bool no_thread = what.compare(0, 14, "pthread_create") == 0;  // the message of TBB
+    return complain(what + (no_thread ? ": cannot start a thread; try --threads 1" : ""), 1);
   }
 }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# cmake --install, and what find_package(gaussmap) finds afterwards: one file of targets per component.
+# Rules for cmake --install, and the package that find_package(gaussmap) finds: one file of targets per component.
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/gaussmap)
@@ -18,7 +18,14 @@ endforeach()
 if(GAUSSMAP_BUILD_APPS)
   install(TARGETS gaussmap_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
   if(GAUSSMAP_BUILD_VIEWER)
-    install(TARGETS gaussmap_view RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})  # `gaussmap view` looks for it beside itself
+    install(TARGETS gaussmap_view RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})  # `gaussmap view` expects it in its folder
+  endif()
+  if(NOT CMAKE_CROSSCOMPILING)
+    install(DIRECTORY ${PROJECT_BINARY_DIR}/apps/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+    set(written ${PROJECT_BINARY_DIR}/apps/completions)
+    install(FILES ${written}/gaussmap DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+    install(FILES ${written}/_gaussmap DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+    install(FILES ${written}/gaussmap.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
   endif()
 endif()
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})

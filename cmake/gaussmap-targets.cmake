@@ -1,25 +1,26 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# How the targets of the project are made, the same for all of them.
+# Functions and settings that all targets of the project share.
 
-# The standard headers that nearly every source includes, and Eigen.
+# Precompiled headers: Eigen, and the standard headers that nearly every source includes.
 set(gaussmap_precompiled <Eigen/Core> <Eigen/Geometry> <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map>
                          <memory> <optional> <sstream> <stdexcept> <string> <unordered_map> <utility> <variant> <vector>)
 
-# The public headers say what is exported (GAUSSMAP_API). Shared libraries also export internals: gaussmap::io, the
-# commands and the tests use those of gaussmap::core. Nothing else leaves them.
+# GAUSSMAP_API in the public headers marks the exported functions and classes. Shared libraries also export internal
+# functions, because gaussmap::io, the commands and the tests use those of gaussmap::core.
 set(gaussmap_visibility hidden)
 if(BUILD_SHARED_LIBS)
   set(gaussmap_visibility default)
 endif()
 
-# gaussmap_fast_build(TARGET [HEADERS...]): precompiled headers and unity builds by folder, with GAUSSMAP_FAST_BUILD.
+# gaussmap_fast_build(TARGET [HEADERS...]): if GAUSSMAP_FAST_BUILD is on, uses precompiled headers and one unity source
+# per folder.
 function(gaussmap_fast_build target)
   if(NOT GAUSSMAP_FAST_BUILD)
     return()
   endif()
   target_precompile_headers(${target} PRIVATE ${gaussmap_precompiled} ${ARGN})
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
-  # g++ takes the anonymous namespaces of the sources that a unity source includes for those of headers.
+  # In a unity source, g++ warns of anonymous namespaces as if the included sources were headers.
   target_compile_options(${target} PRIVATE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-subobject-linkage>)
   get_target_property(sources ${target} SOURCES)
   foreach(source ${sources})
@@ -30,7 +31,8 @@ function(gaussmap_fast_build target)
   endforeach()
 endfunction()
 
-# gaussmap_add_library(NAME [STATIC] FOLDERS folder...): library gaussmap_NAME, alias gaussmap::NAME, from src/<folder>.
+# gaussmap_add_library(NAME [STATIC] FOLDERS folder...): adds the library gaussmap_NAME (alias gaussmap::NAME) with the
+# sources of src/FOLDER.
 function(gaussmap_add_library name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "STATIC" "" "FOLDERS")
   set(sources)
@@ -52,7 +54,7 @@ function(gaussmap_add_library name)
     PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
     PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:gaussmap_warnings>)
-  # A fused multiply-add would make the lattice, the merges and so the map depend on the machine.
+  # With fused multiply-add, roundings and therefore maps would depend on the machine.
   target_compile_options(${target} PRIVATE -ffp-contract=off)
   gaussmap_fast_build(${target})
 endfunction()

@@ -1,21 +1,22 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs the Debian packages that gaussmap is built and tested with. Works as root or through sudo,
-# says what it does, and does nothing when all are there. Usage: cmake/install-deps.sh [--checks]
+# Installs the Debian packages that are needed to build and test gaussmap, as root or through sudo. Prints the packages
+# that it installs, and does nothing if all are installed. Usage: cmake/install-deps.sh [--checks]
 set -euo pipefail
 
 packages=(
   g++ cmake ninja-build ccache pkg-config
   libeigen3-dev libtbb-dev libnanoflann-dev libboost-dev   # core: algebra, threads, nearest neighbours, containers
   libsqlite3-dev libzstd-dev liblzf-dev zlib1g-dev         # core: map files, compressed PCD, laser logs
-  libpcl-dev                                               # the PCL edge
-  libvtk9-dev libegl-dev libegl-mesa0 libx11-dev           # the viewer; Mesa draws pictures without a display
-  libcli11-dev nlohmann-json3-dev                          # the command line
-  libgtest-dev liboctomap-dev pcl-tools                    # tests; peers of the benchmarks
+  libpcl-dev                                               # PCL plug-ins
+  libvtk9-dev libegl-dev libegl-mesa0 libx11-dev           # viewer; Mesa draws pictures without a display
+  libcli11-dev nlohmann-json3-dev                          # command line
+  libgtest-dev liboctomap-dev pcl-tools                    # tests; programs that the benchmarks compare with
 )
 case "${1:-}" in
   "") ;;
-  --checks) packages+=(git clang libclang-rt-14-dev clang-format clang-tidy cppcheck) ;;  # sanitizers, fuzzers, lint
+  --checks) packages+=(git clang libclang-rt-14-dev clang-format clang-tidy cppcheck  # sanitizers, fuzzers, lint
+                        mandoc zsh fish) ;;  # man pages and completions
   *) echo "usage: cmake/install-deps.sh [--checks]" >&2; exit 2 ;;
 esac
 

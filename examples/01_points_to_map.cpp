@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Points in memory -> map file -> which way does the surface face?   Usage: 01_points_to_map OUT.gmap
+// Builds a map of points in memory, saves and loads it, and finds a surface normal.   Usage: 01_points_to_map OUT.gmap
 #include <gaussmap/gaussmap.h>
 
 #include <cstdio>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// PCD scans with poses -> a map with more Gaussians where they help.   Usage: 02_scans_to_map FOLDER OUT.gmap
+// Builds a map of PCD scans with poses, and adds Gaussians where they help.   Usage: 02_scans_to_map FOLDER OUT.gmap
 #include <gaussmap/gaussmap.h>
 
 #include <cstdio>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where was a scan taken? Starts half a metre off.   Usage: 03_localise MAP.gmap SCAN.pcd
+// Finds the pose of a scan in a map, from a guess that is half a metre wrong.   Usage: 03_localise MAP.gmap SCAN.pcd
 #include <gaussmap/gaussmap.h>
 
 #include <cmath>

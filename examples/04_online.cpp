@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A map scan by scan, as a robot gets them; what has moved is forgotten.   Usage: 04_online OUT.gmap
+// Builds a map scan by scan, as on a robot, and deletes what has moved.   Usage: 04_online OUT.gmap
 #include <gaussmap/gaussmap.h>
 
 #include <cmath>
 #include <cstdio>
 
-/// A laser in the middle of a room of 8 x 6 x 2.5 m; a box stands in front of one wall in the first scans.
+/// Simulates a laser in the middle of a room of 8 x 6 x 2.5 m. With `with_box`, a box stands in front of one wall.
 gaussmap::Scan scanOfRoom(bool with_box) {
   gaussmap::Scan scan;
   for (int row = -8; row <= 8; ++row)

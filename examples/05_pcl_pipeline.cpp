@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap between PCL's classes: thin out a cloud, build its map, align it.   Usage: 05_pcl_pipeline CLOUD.pcd
+// Uses gaussmap with PCL: thins out a cloud, builds its map, and aligns the cloud.   Usage: 05_pcl_pipeline CLOUD.pcd
 #include <gaussmap/pcl/conversions.h>
 #include <gaussmap/pcl/gaussian_map_filter.h>
 #include <gaussmap/pcl/registration.h>
@@ -14,7 +14,7 @@ using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 int main(int, char** argv) {
   const Cloud::Ptr cloud(new Cloud);
   if (pcl::io::loadPCDFile(argv[1], *cloud) != 0) return 1;
-  cloud->sensor_origin_.setZero();  // the cloud as it is, in its own frame
+  cloud->sensor_origin_.setZero();  // use the cloud in its own frame
   cloud->sensor_orientation_.setIdentity();
 
   gaussmap::GaussianMapFilter<pcl::PointXYZ> filter;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scans of a planar laser -> a map of linked line segments.   Usage: 06_segments FOLDER OUT.geojson
+// Builds a map of linked line segments from scans of a planar laser.   Usage: 06_segments FOLDER OUT.geojson
 #include <gaussmap/gaussmap.h>
 
 #include <cstdio>
@@ -9,7 +9,7 @@
 int main(int, char** argv) {
   try {
     const gaussmap::FoundScans found = gaussmap::findScans({argv[1]});
-    gaussmap::SegmentFitter fitter;  // Leal 2000 as printed: SegmentFitter(SegmentFitterOptions::leal2000(), utility)
+    gaussmap::SegmentFitter fitter;  // the paper as printed: SegmentFitter(SegmentFitterOptions::leal2000(), utility)
     for (const gaussmap::LaserScan& scan : gaussmap::planarScans(found.scans)) fitter.add(scan);
 
     const gaussmap::SegmentMap map = fitter.map();

@@ -33,8 +33,8 @@ std::uintmax_t amountOf(const std::string& option, std::string_view text, bool s
   if (suffix && rest == "M") unit = 1000000;
   if (suffix && rest == "G") unit = 1000000000;
   if (error != std::errc() || value == 0 || (unit == 1 && !rest.empty()) || value > UINTMAX_MAX / unit)
-    throw UsageError(option + " " + std::string(text) + ": is no whole number above 0" +
-                     (suffix ? ", with k, M or G behind it if you like" : ""));
+    throw UsageError(option + " " + std::string(text) + ": expected a whole number above 0" +
+                     (suffix ? ", optionally followed by k, M or G" : ""));
   return value * unit;
 }
 
@@ -60,7 +60,7 @@ std::map<int, std::size_t> maxGaussians(const BudgetInput& input, const Gaussian
     if (most < map.cellCount(scale))
       throw UsageError("--max-gaussians " + std::to_string(most) + ": scale " + std::to_string(scale) + " has " +
                        std::to_string(map.cellCount(scale)) +
-                       " occupied cells, which hold at least one each; take more, or coarser cells");
+                       " occupied cells, and each needs one Gaussian; use a larger limit or coarser cells");
   return limits;
 }
 
@@ -90,12 +90,11 @@ Option addLimitOptions(Command& command, BudgetInput& input) {
   const Option budget =
       command.number("--budget", input.budget, 1.0, 1e6, "Gaussians per occupied cell of a coarse scale, on average");
   command.texts("--max-gaussians", input.max_gaussians,
-                "most Gaussians of each coarse scale: N, or SCALE=N for one (repeatable)");
-  command.text("--max-bytes", input.max_bytes, "most bytes of the whole file, with suffix k, M or G");
+                "maximum Gaussians per coarse scale: N, or SCALE=N for one scale; repeatable");
+  command.text("--max-bytes", input.max_bytes, "maximum size of the map file [bytes], with suffix k, M or G");
   command
       .number("--max-error", input.max_error, 1e-9, 1e9,
-              "fewest Gaussians so that 95 % of the samples of a coarse scale lie within this distance of the finest "
-              "scale [m]")
+              "maximum distance of 95 % of a coarse scale's samples to the finest scale [m]")
       .hideDefault();
   command.exclusive({"--budget", "--max-gaussians", "--max-bytes", "--max-error"});
   return budget;
@@ -103,10 +102,8 @@ Option addLimitOptions(Command& command, BudgetInput& input) {
 
 void addCostOption(Command& command, BudgetInput& input) {
   command
-      .choice(
-          "--cost", input.cost, Command::wordsOf(kCosts),
-          "cost of a merge (agglomerate): volume (default), the growth of the ellipsoids' volume; runnalls, the loss "
-          "of likelihood")
+      .choice("--cost", input.cost, Command::wordsOf(kCosts),
+              "merge cost: volume (default) = growth of volume, runnalls = loss of likelihood")
       .rare();
 }
 
@@ -114,8 +111,8 @@ void addBudgetOptions(Command& command, BudgetInput& input) {
   addLimitOptions(command, input);
   command
       .choice("--method", input.method, Command::wordsOf(kMethods),
-              "agglomerate: merge the Gaussians of the finer scale until the budget is met; insert: split one cluster "
-              "after the other, as in the paper")
+              R"(agglomerate: merge the Gaussians of the finer scale until the budget is met;
+              insert: start with one Gaussian per cell and add clusters, as in the paper)")
       .rare();
   addCostOption(command, input);
   command.seed(input.refine.seed, "seed of the random swaps of --method insert").rare();
@@ -124,8 +121,8 @@ void addBudgetOptions(Command& command, BudgetInput& input) {
 void checkBudget(const BudgetInput& input) {
   if (!input.max_bytes.empty()) amountOf("--max-bytes", input.max_bytes, true);
   if (input.method == "insert" && (!input.max_bytes.empty() || input.max_error > 0.0))
-    throw UsageError("--method insert: knows --budget and --max-gaussians only");
-  if (input.method == "insert" && input.cost) throw UsageError("--cost: for --method agglomerate only");
+    throw UsageError("--method insert: supports only --budget and --max-gaussians");
+  if (input.method == "insert" && input.cost) throw UsageError("--cost: only for --method agglomerate");
 }
 
 GaussianMap<3> refineWithin(GaussianMap<3> map, const BudgetInput& input, MapMetadata& metadata, Json step) {
@@ -139,13 +136,13 @@ GaussianMap<3> refineWithin(GaussianMap<3> map, const BudgetInput& input, MapMet
   if (is_searched || (input.curves && !one_per_cell && options.method == RefineMethod::Agglomerate))
     options.curves.emplace();
   recordStep(metadata, refineStep(budget, options, detailsOf(input, std::move(step))));
-  recordCurves(metadata, {});  // of the map as it was
+  recordCurves(metadata, {});  // the old curves describe the old map
   if (one_per_cell && isUnrefined(map)) return map;
   measureFile(budget, metadata, options.threads);
   RefineResult<3> result = refine<3>(std::move(map), budget, options);
   for (const NotReached& scale : result.not_reached)
     std::cerr << "gaussmap: warning: scale " << scale.scale << " does not reach --max-error " << input.max_error
-              << ": with all that the finer scale's Gaussians allow 95 % are within " << scale.q95 << " m\n";
+              << ": with as many Gaussians as the finer scale, 95 % of the samples lie within " << scale.q95 << " m\n";
   recordCurves(metadata, result.curves);
   return std::move(result.map);
 }

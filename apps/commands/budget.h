@@ -13,43 +13,46 @@
 
 namespace gaussmap::app {
 
-/// How many Gaussians the coarse scales may have: the same options for every command that refines.
+/// Limits of the number of Gaussians: the options that all commands with a budget share.
 struct BudgetInput {
   double budget = PerCell().gaussians;
   std::vector<std::string> max_gaussians;  // "N" or "SCALE=N"
   std::string max_bytes;                   // with suffix k, M, G
-  double max_error = 0.0;                  // [m], 0: not given
+  double max_error = 0.0;                  // [m]; 0: not given
   std::string method = "agglomerate";
-  std::optional<std::string> cost;  // of merges, --method agglomerate only
+  std::optional<std::string> cost;  // of a merge; only with --method agglomerate
   RefineOptions refine;             // seed and threads
-  bool curves = true;               // measure what other budgets would give
+  bool curves = true;               // measure the error curves of other budgets
 };
 void addBudgetOptions(Command& command, BudgetInput& input);
-/// Two parts of these, for commands that only merge clusters: the budgets, and --cost. Returns --budget.
+/// A part of these options, for commands that only merge clusters: the budgets. Returns the option --budget.
 Option addLimitOptions(Command& command, BudgetInput& input);
+/// A part of these options: --cost.
 void addCostOption(Command& command, BudgetInput& input);
 
-/// A whole number > 0, with an optional suffix k, M or G (powers of 1000) behind it. Throws UsageError, naming the
-/// option.
+/// Reads a whole number > 0. If `suffix` is true, it may end in k, M or G (powers of 1000). Throws UsageError, naming
+/// the option, for any other text.
 std::uintmax_t amountOf(const std::string& option, std::string_view text, bool suffix);
 
-/// Checks the words that need no map. Throws UsageError.
+/// Checks the options that can be checked without a map. Throws UsageError.
 void checkBudget(const BudgetInput& input);
 
-/// --max-gaussians by scale: "N" is for every coarse scale (of a map of one scale: that), "SCALE=N" for one, and
-/// stronger. Throws UsageError for scales below `first_scale`, and for fewer than a scale has cells.
+/// Returns --max-gaussians by scale. "N" limits every coarse scale, or the only scale of a map with one scale.
+/// "SCALE=N" limits one scale and has precedence. Throws UsageError for scales below `first_scale`, and if a limit is
+/// smaller than the number of cells of its scale.
 std::map<int, std::size_t> maxGaussians(const BudgetInput& input, const GaussianMap<3>& map, int first_scale);
-/// What the words say, for a map whose scales from `first_scale` on may be limited. MaxBytes has no size_of yet.
-/// Throws UsageError.
+/// Returns the budget of the options for a map. Only scales from `first_scale` on can be limited. MaxBytes::size_of is
+/// not set; see measureFile(). Throws UsageError as maxGaussians() and amountOf().
 Budget budgetOf(const BudgetInput& input, const GaussianMap<3>& map, int first_scale);
+/// Returns --cost, or its default.
 MergeCost mergeCost(const BudgetInput& input);
-/// `step` with the words of the budget as they were typed, for refineStep() and simplifyStep().
+/// Returns `step` with --cost and --max-gaussians as the user typed them, as JSON, for refineStep() and simplifyStep().
 std::string detailsOf(const BudgetInput& input, Json step);
-/// Gives MaxBytes the size of the map file with this metadata.
+/// Sets MaxBytes::size_of to the size of the map file with this metadata. Does nothing for other budgets.
 void measureFile(Budget& budget, const MapMetadata& metadata, int threads);
 
-/// The map within its budget. Adds the error curves to the metadata, and `step`, completed by the budget, to the
-/// history; warns on stderr of scales that cannot reach --max-error.
+/// Refines the map within the budget. Adds the error curves to the metadata and `step`, completed with the budget, to
+/// the history. Warns on stderr of scales that cannot reach --max-error. Throws UsageError as budgetOf().
 GaussianMap<3> refineWithin(GaussianMap<3> map, const BudgetInput& input, MapMetadata& metadata, Json step);
 
 }  // namespace gaussmap::app

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap clean SCANS... -o DIR: the scans without the points of moving objects.
+// gaussmap clean SCANS... -o DIR: removes the points of moving objects from scans.
 #include <algorithm>
 #include <cmath>
 #include <iostream>
@@ -23,8 +23,8 @@ namespace {
 
 const Help kCleanHelp = {
     "Remove the points of moving objects from scans", "gaussmap clean scans/ -o clean/ --removed removed.pcd",
-    R"(Finds cells that some scans hit and other scans see through. At least two scans that see the same places are
-needed. Every field and the VIEWPOINT of the scans are kept. In organised clouds, removed points become NaN.)"};
+    R"(Finds cells that some scans hit and other scans see through. At least two scans of the same place are needed. The
+scans keep all their fields and their VIEWPOINT. In organised clouds, removed points become NaN.)"};
 
 struct CleanCommand {
   ScanInput input;
@@ -36,7 +36,7 @@ struct CleanCommand {
   bool writes() const { return !folder.empty() || !merged.empty() || !removed.empty(); }
 };
 
-/// DIR/<name of the scan>. Throws UsageError if two scans have the same name.
+/// Returns the path of each cleaned scan: FOLDER/NAME. Throws UsageError if two scans have the same file name.
 std::vector<std::filesystem::path> outputsFor(const PcdScans& scans, const std::string& folder) {
   std::map<std::filesystem::path, std::filesystem::path> taken;
   std::vector<std::filesystem::path> outputs;
@@ -45,13 +45,13 @@ std::vector<std::filesystem::path> outputsFor(const PcdScans& scans, const std::
     const auto [entry, is_new] = taken.emplace(name, scan.path);
     if (!is_new)
       throw UsageError(scan.path.string() + " and " + entry->second.string() + " would both become " +
-                       (std::filesystem::path(folder) / name).string() + ": clean them apart, or use --merged");
+                       (std::filesystem::path(folder) / name).string() + "; clean them separately or use --merged");
     outputs.push_back(std::filesystem::path(folder) / name);
   }
   return outputs;
 }
 
-/// Names of the cleaned scans. Checks all outputs, before any work is done, and makes the directory.
+/// Checks all outputs, creates the directory, and returns the paths of the cleaned scans. Throws UsageError.
 std::vector<std::filesystem::path> checkedOutputs(const CleanCommand& command, const PcdScans& scans) {
   std::vector<std::filesystem::path> inputs;
   inputs.reserve(scans.size() + 1);
@@ -77,7 +77,7 @@ void mergeInto(PcdRecords& all, PcdRecords part, const PcdScan& scan, ScanFrame 
   try {
     append(all, part);
   } catch (const std::invalid_argument&) {
-    throw FileError(scan.path, "other fields than the scans before: they cannot be merged into one cloud");
+    throw FileError(scan.path, "has other fields than the scans before, so they cannot be merged into one cloud");
   }
 }
 
@@ -95,23 +95,23 @@ void print(const RemovalScore& score) {
             << percent(score.associatedAccuracy()) << " %\n";
 }
 
-/// What became of the points.
+/// The counts of the points, and the score.
 struct Cleaned {
   std::size_t points = 0, removed = 0;
   RemovalScore score;
 };
 
-/// Refuses scans that cannot be scored or written, before any work is done.
+/// Throws FileError for scans that cannot be scored or written. Runs before the long computation.
 void checkScans(const CleanCommand& command, const PcdScans& scans) {
   if (!command.labels.empty())
     for (std::size_t i = 0; i < scans.size(); ++i)
       if (!scans.reader(i).header().find(command.labels))
-        throw FileError(scans.files()[i].path, "no field '" + command.labels + "' to score against");
+        throw FileError(scans.files()[i].path, "no field '" + command.labels + "', which --labels needs for the score");
   if (command.writes())
     for (std::size_t i = 0; i < scans.size(); ++i) checkWritable(scans.reader(i));
 }
 
-/// Writes every scan without its moving points. `outputs`: as long as the scans, or empty.
+/// Writes every scan without its moving points. `outputs` has one path per scan, or is empty.
 Cleaned writeCleaned(const CleanCommand& command, const PcdScans& scans, const MovingPoints& moving,
                      const std::vector<std::filesystem::path>& outputs) {
   Cleaned cleaned;
@@ -128,7 +128,7 @@ Cleaned writeCleaned(const CleanCommand& command, const PcdScans& scans, const M
     }
     if (!command.writes()) continue;
     PcdRecords records = readRecords(reader);
-    if (!poseFault(records.viewpoint).empty()) records.viewpoint = scans.files()[i].pose;  // that of --poses
+    if (!poseFault(records.viewpoint).empty()) records.viewpoint = scans.files()[i].pose;  // the pose of --poses
     const auto part = [&](const std::vector<bool>& keep, bool organised) {
       PcdRecords kept = records;
       if (!organised) kept.width = 0;
@@ -179,20 +179,22 @@ void addClean(CLI::App& app) {
   auto options = std::make_shared<CleanCommand>();
   Command command(app, "clean", kCleanHelp);
   addScanPaths(command, options->input);
-  command.text("-o,--output", options->folder, "directory for the cleaned scans, named as they were");
+  command.text("-o,--output", options->folder, "directory for the cleaned scans, which keep their file names");
   command.text("--merged", options->merged, "write the static points as one cloud in the map frame (.pcd)");
   command.text("--removed", options->removed, "write the moving points as one cloud in the map frame (.pcd)");
   command.force(options->force, "replace existing outputs");
-  command.text("--labels", options->labels, "score against this field of the scans: 0 = static, else dynamic")
+  command.text("--labels", options->labels, "score against this field of the scans: 0 = static, other values = dynamic")
       .valueMayBeMissing("label");
   command.number("--resolution", options->options.resolution, 1e-3, 1e3, "side of the finest cells [m]");
   command
       .number("--no-return-is-free", options->options.evidence.no_return_is_free, 1e-3, 1e6,
-              "count directions without a return as free space up to this range [m]")
+              "treat directions without a return as free space up to this range [m]")
       .rare();
   addScanOptions(command, options->input);
   command.threads(options->options.evidence.threads);
   command.json(options->json);
+  command.folders({"--output"});
+  command.files({"--merged", "--removed"}, {".pcd"});
   command.onRun([options] { run(*options); });
 }
 

@@ -7,7 +7,7 @@ class App;
 
 namespace gaussmap::app {
 
-// One function per command, called once by main.
+// One function per command. main() calls each function once.
 void addPcd2map(CLI::App& app);
 void addRefine(CLI::App& app);
 void addCompress(CLI::App& app);
@@ -28,5 +28,7 @@ void addSimulate(CLI::App& app);
 void addDraw(CLI::App& app);
 void addSegments(CLI::App& app);
 void addView(CLI::App& app);
+void addCompletion(CLI::App& app);
+void addReference(CLI::App& app);
 
 }  // namespace gaussmap::app

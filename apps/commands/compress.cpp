@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap compress MAP -o OUT --max-error E: detail only where it is needed.
+// gaussmap compress MAP -o OUT --max-error E: removes detail where coarse cells are accurate enough.
 #include "gaussmap/editing/compress.h"
 
 #include <cstdio>
@@ -19,14 +19,15 @@ struct CompressCommand : MapTaskOptions {
   CompressOptions compress;
 };
 
-const Help kCompressHelp = {"Remove detail below coarse cells that are accurate enough",
-                            "gaussmap compress street.gmap -o small.gmap --max-error 0.2",
-                            R"(Starts at the coarsest scale. Everything finer below a cell is removed if
-  - 95 % of the samples of each of its Gaussians lie within --max-error of the means of the finest scale, and
-  - each of these means below the cell lies within --max-error of an ellipsoid (95 % of the mass) of the cell.
-All other Gaussians stay unchanged. The result accepts no more scans and cannot be refined: refine first.)"};
+const Help kCompressHelp = {
+    "Remove detail below coarse cells that are accurate enough",
+    "gaussmap compress street.gmap -o small.gmap --max-error 0.2",
+    R"(Starts at the coarsest scale. All finer cells below a cell are removed if both conditions hold:
+  - For each Gaussian of the cell, 95 % of its samples lie within --max-error of a mean of the finest scale.
+  - Each mean of the finest scale below the cell lies within --max-error of an ellipsoid of the cell (95 % of the mass).
+The other Gaussians stay unchanged. The result accepts no more scans and cannot be refined, so refine first.)"};
 
-/// Cells and Gaussians of every scale, also as they were before.
+/// Returns scalesOf() with the counts of cells and Gaussians before the compression.
 Json scalesWithCountsBefore(const GaussianMap<3>& map, const GaussianMap<3>& whole) {
   Json scales = scalesOf(map);
   for (int s = 0; s < map.scales(); ++s) {
@@ -49,8 +50,7 @@ void print(const CompressCommand& command, const Json& scales, const MapTask& ta
 void run(CompressCommand command) {
   MapTask task(command);
   const GaussianMap<3> whole = task.load();
-  if (whole.isCompressed())
-    throw std::runtime_error(command.map + ": is compressed already, compress the map that it was made from");
+  if (whole.isCompressed()) throw std::runtime_error(command.map + ": is already compressed; use the original map");
   command.compress.threads = command.threads;
   const GaussianMap<3> map = compress(whole, command.max_error, command.compress);
   task.addStep("compress", {{"max_error", command.max_error}, {"seed", command.compress.seed}});
@@ -71,7 +71,9 @@ void addCompress(CLI::App& app) {
   auto options = std::make_shared<CompressCommand>();
   Command command(app, "compress", kCompressHelp);
   addMapToMap(command, *options);
-  command.number("--max-error", options->max_error, 1e-9, 1e9, "how far a coarse cell may be from the finest scale [m]")
+  command
+      .number("--max-error", options->max_error, 1e-9, 1e9,
+              "maximum distance between a coarse cell and the finest scale [m]")
       .required()
       .hideDefault();
   command.seed(options->compress.seed, "seed of the samples").rare();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap crop MAP -o OUT --box|--polygon: a part of a map.
+// gaussmap crop MAP -o OUT --box|--polygon: cuts a part out of a map.
 #include "gaussmap/editing/crop.h"
 
 #include <limits>
@@ -21,24 +21,26 @@ struct CropCommand : MapTaskOptions {
 
 const Help kCropHelp = {
     "Cut a part out of a map", "gaussmap crop town.gmap -o square.gmap --polygon 0 0 40 5 38 52 -3 45",
-    R"(A Gaussian is inside if its mean is inside. What is inside stays unchanged, including exact moments, so that
-parts that do not overlap can be merged to the whole map again. A coarse cluster on the border keeps only what
-lies inside.)"};
+    R"(A Gaussian is inside if its mean is inside. Gaussians inside stay unchanged, including their exact moments, so
+parts that do not overlap can be merged to the whole map again. A coarse cluster on the border is recomputed from
+the Gaussians inside.)"};
 
 Box<3> boxOf(const std::vector<double>& n) {
   constexpr double kFar = std::numeric_limits<double>::infinity();
   if (n.size() != 4 && n.size() != 6)
-    throw UsageError("--box: takes x0 y0 x1 y1 or x0 y0 z0 x1 y1 z1, not " + std::to_string(n.size()) + " numbers");
+    throw UsageError("--box: " + std::to_string(n.size()) +
+                     " numbers found, expected x0 y0 x1 y1 or x0 y0 z0 x1 y1 z1");
   Box<3> box =
       n.size() == 4 ? Box<3>{{n[0], n[1], -kFar}, {n[2], n[3], kFar}} : Box<3>{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
   if (!(box.low.array() < box.high.array()).all())
-    throw UsageError("--box: takes the low corner first, and is not flat");
+    throw UsageError("--box: every coordinate of the first corner must be below that of the second corner");
   return box;
 }
 
 Polygon polygonOf(const std::vector<double>& n) {
   if (n.size() % 2 != 0 || n.size() < 6)
-    throw UsageError("--polygon: takes x y of three corners at least, not " + std::to_string(n.size()) + " numbers");
+    throw UsageError("--polygon: " + std::to_string(n.size()) +
+                     " numbers found, expected x y of at least three corners");
   std::vector<Vector<2>> corners;
   for (std::size_t i = 0; i < n.size(); i += 2) corners.emplace_back(n[i], n[i + 1]);
   return Polygon(std::move(corners));
@@ -60,7 +62,7 @@ void run(const CropCommand& command) {
   const auto isInside = region(command);
   const GaussianMap<3> whole = task.load();
   const GaussianMap<3> map = crop<3>(whole, isInside);
-  if (map.empty()) throw std::runtime_error(command.map + ": nothing of it lies in this region");
+  if (map.empty()) throw std::runtime_error(command.map + ": no Gaussian lies in this region");
   Json step = {{"outside", command.outside}};
   step[command.box.empty() ? "polygon" : "box"] = command.box.empty() ? command.polygon : command.box;
   task.addStep("crop", step);
@@ -77,8 +79,8 @@ void addCrop(CLI::App& app) {
   command.numbers("--box", options->box, 4, 6, -1e12, 1e12,
                   "x0 y0 x1 y1, or x0 y0 z0 x1 y1 z1 [m]: low corner <= mean < high corner");
   command.numbers("--polygon", options->polygon, 6, 1000000, -1e12, 1e12,
-                  "x y of its corners, in order [m], any height");
-  command.flag("--outside", options->outside, "keep what lies outside instead");
+                  "x y of the corners, in order [m]; all heights are inside");
+  command.flag("--outside", options->outside, "keep the Gaussians outside instead");
   command.json(options->json);
   command.onRun([options] { run(*options); });
 }

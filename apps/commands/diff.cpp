@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap diff A B: what is new, gone, changed in B.
+// gaussmap diff A B: finds what is new, gone or changed in B.
 #include <cstdio>
 #include <memory>
 
@@ -26,8 +26,8 @@ const Help kDiffHelp = {
     "gaussmap diff monday.gmap tuesday.gmap -o changes.pcd --level 0.001",
     R"(The output holds every Gaussian of the second map, and those of the first map that are gone, with the fields
 x y z covariance[6] weight p_value label. Labels: 0 the same, or too few points to decide; 1 new; 2 gone; 3 changed.
-What the sensors of the second map never observed counts as gone too. At refined scales, clusters can differ because
-the same surface was divided in another way: compare the finest scale.)"};
+Places that the sensors of the second map never observed count as gone too. At refined scales, clusters can differ
+because the same surface was divided in another way, so compare the finest scale.)"};
 
 void run(const DiffCommand& options) {
   if (!options.output.empty()) {
@@ -69,20 +69,21 @@ void addDiff(CLI::App& app) {
   auto options = std::make_shared<DiffCommand>();
   Command command(app, "diff", kDiffHelp);
   command.text("first", options->first, "map (.gmap, or PCD of Gaussians)").required();
-  command.text("second", options->second, "the later one, in the same frame and cells").required();
+  command.text("second", options->second, "later map, with the same frame and cells").required();
   command.text("-o,--output", options->output, "labelled Gaussians to write (.pcd)");
   command.force(options->force);
-  command.scale(options->diff.scale, "which scale, 0 = finest");
+  command.scale(options->diff.scale, "scale to compare, 0 = finest");
   command.number("--level", options->diff.level, 1e-12, 0.5,
                  "significance level: a change is reported if its p-value is at most this");
   command
-      .number(
-          "--points", options->diff.points, 1.0, 1e9,
-          "how many points of one object count as independent at most; more find smaller movements, but also errors "
-          "of the poses")
+      .number("--points", options->diff.points, 1.0, 1e9,
+              R"(maximum number of points of one object that count as independent;
+          a larger number finds smaller movements, but also errors of the poses)")
       .rare();
   command.threads(options->diff.threads);
   command.json(options->json);
+  command.files({"first", "second"}, {".gmap", ".pcd"});
+  command.files({"--output"}, {".pcd"});
   command.onRun([options] { run(*options); });
 }
 

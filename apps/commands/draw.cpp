@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap draw MAP... -o OUT.svg: the ellipses of maps from above.
+// gaussmap draw MAP... -o OUT.svg: draws the ellipses of maps, seen from above.
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -15,12 +15,12 @@
 namespace gaussmap::app {
 namespace {
 
-constexpr std::size_t kMostEllipses = 200000;  // 30 MB of text, more than viewers like
+constexpr std::size_t kMaxEllipses = 200000;  // already 30 MB of text, which is the limit of many viewers
 
 const Help kDrawHelp = {
     "Draw maps from above: the ellipses of one scale, coloured by height",
     "gaussmap draw one.gmap street.gmap -o street.svg --scale 2",
-    R"(One panel per map, all in the same scale. Every ellipse is the exact projection of the ellipsoid of a Gaussian.)"};
+    R"(One panel per map, all drawn to the same scale. Each ellipse is the exact projection of an ellipsoid.)"};
 
 struct DrawCommand {
   std::vector<std::string> maps;
@@ -52,7 +52,7 @@ Panel panelOf(const std::string& path, const DrawCommand& options) {
   return panel;
 }
 
-/// The box around all ellipses.
+/// Returns the box around all ellipses [m].
 Box<2> windowAround(const std::vector<Panel>& panels) {
   Box<2> window = emptyBox();
   for (const Panel& panel : panels)
@@ -83,9 +83,9 @@ void run(const DrawCommand& options) {
     count += panel.ellipses.size();
   }
   if (count == 0) throw std::runtime_error(options.maps.front() + ": no Gaussian lies in the picture");
-  if (count > kMostEllipses)
+  if (count > kMaxEllipses)
     throw UsageError(std::to_string(count) + " Gaussians would lie in the picture, more than " +
-                     std::to_string(kMostEllipses) + ": take a coarser --scale, or a part of the map (--box)");
+                     std::to_string(kMaxEllipses) + "; use a coarser --scale or draw a part of the map (--box)");
   const Box<2> window = given ? *given : windowAround(panels);
   drawMaps(std::move(panels), window, options.output.path);
   std::cout << options.output.path << ": " << count << " Gaussians, "
@@ -99,9 +99,12 @@ void addDraw(CLI::App& app) {
   Command command(app, "draw", kDrawHelp);
   command.texts("maps", options->maps, "maps (.gmap, or PCD of Gaussians)").required();
   command.output(options->output, "picture to write (.svg)");
-  command.scale(options->scale, "which scale, 0 = finest; default: the coarsest");
+  command.scale(options->scale, "scale to draw, 0 = finest; default: the coarsest");
   command.number("--sigma", options->sigma, 0.01, 100.0, "half axes of the ellipses, in standard deviations");
-  command.numbers("--box", options->box, 4, -1e9, 1e9, "only the part from x0 y0 to x1 y1 [m]").type("X0 Y0 X1 Y1");
+  command.numbers("--box", options->box, 4, -1e9, 1e9, "draw only the part from x0 y0 to x1 y1 [m]")
+      .type("X0 Y0 X1 Y1");
+  command.files({"maps"}, {".gmap", ".pcd"});
+  command.files({"--output"}, {".svg"});
   command.onRun([options] { run(*options); });
 }
 

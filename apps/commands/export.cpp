@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap export MAP OUT: the Gaussians for other programs; the name's ending says for which.
+// gaussmap export MAP OUT: writes the Gaussians for other programs. The extension of OUT chooses the format.
 #include <iostream>
 #include <map>
 #include <memory>
@@ -29,8 +29,8 @@ const Help kExportHelp = {"Write the Gaussians of a map for other programs: PCD,
 .pcd  Readable by all PCL tools and by gaussmap. Fields: x y z covariance[6] weight occupancy cell_side scale
       cell_x cell_y cell_z
 .ply  --as ellipsoids for mesh viewers, points for point cloud viewers, splats for viewers of 3D Gaussian splatting.
-      Without --scale, each place at its finest scale. Coordinates are floats: for a map far from the origin, add the
-      offset that the header calls "origin".
+      Without --scale, the leaves of the map. Coordinates are floats: if the header has a comment "origin X Y Z", add
+      it to all coordinates.
 .vtp  For ParaView: covariances and their square roots as tensors, normals, weights, occupancy, parents.
 .csv  One line per Gaussian.)"};
 
@@ -47,15 +47,15 @@ GaussianPlyOptions plyOptions(const ExportCommand& options) {
   return ply;
 }
 
-/// Throws UsageError for options that only PLY files have, if the output is not one.
+/// Throws UsageError for options of PLY files if the output is not a PLY file, and for --sigma without ellipsoids.
 void checkPlyOptions(const ExportCommand& options, const std::string& ending) {
   if (ending != ".ply")
     for (const auto& [name, given] :
          {std::pair("--as", !options.content.empty()), std::pair("--color", !options.colour.empty()),
           std::pair("--sigma", options.sigma.has_value())})
-      if (given) throw UsageError(std::string(name) + ": for .ply files only, not for " + options.output.path);
+      if (given) throw UsageError(std::string(name) + ": only for .ply files, not for " + options.output.path);
   if (options.sigma && plyOptions(options).content != PlyContent::Ellipsoids)
-    throw UsageError("--sigma: of ellipsoids only, points and splats have no size to choose");
+    throw UsageError("--sigma: only for ellipsoids, not for points and splats");
 }
 
 std::size_t write(const ExportCommand& options, const GaussianMap<3>& map, const std::string& ending) {
@@ -93,12 +93,13 @@ void addExport(CLI::App& app) {
   command.map(options->map);
   command.text("output", options->output.path, "file to write (.pcd, .ply, .vtp, .csv)").required();
   command.force(options->output.force);
-  command.scale(options->scale, "only this scale, 0 = finest");
+  command.scale(options->scale, "write only this scale, 0 = finest");
   command.choice("--as", options->content, {"ellipsoids", "points", "splats"},
-                 "what a .ply holds: ellipsoids (default), points, splats");
+                 "contents of a .ply: ellipsoids (default), points, splats");
   command.choice("--color", options->colour, {"height", "normal"}, "colours of a .ply: height (default), normal");
   command.number("--sigma", options->sigma, 0.01, 100.0,
                  "half axes of the ellipsoids of a .ply, in standard deviations; default 2");
+  command.files({"output"}, {".pcd", ".ply", ".vtp", ".csv"});
   command.onRun([options] { run(*options); });
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap finish MAP -o OUT: a small map that accepts no more scans.
+// gaussmap finish MAP -o OUT: writes a small, final map that accepts no more scans.
 #include <cstdio>
 #include <memory>
 #include <stdexcept>
@@ -14,28 +14,28 @@ namespace {
 
 struct FinishCommand : MapTaskOptions {
   int finest_scale = 0;
-  int compression = 15;  // zstd level: written once, read often
+  int compression = 15;  // zstd level; high, because a final map is written once and read often
 };
 
 const Help kFinishHelp = {"Write a small, final map that accepts no more scans",
                           "gaussmap finish street.gmap -o robot.gmap",
-                          R"(Drops the moments, which only more scans need, and rounds the rest:
-  - means by at most 1/16 standard deviation along each axis (the other coordinates fixed),
-  - the standard deviation in every direction by at most 5 %,
+                          R"(Drops the moments, which are needed only to add scans, and rounds the other numbers:
+  - means by at most 1/16 standard deviation along each axis (with the other coordinates fixed),
+  - standard deviations by at most 5 % in every direction,
   - weights and log-odds by at most 1/32.
-Covariances stay positive definite. A final map can no longer be merged exactly: keep the original.)"};
+Covariances stay positive definite. A final map can no longer be merged exactly, so keep the original map.)"};
 
 void run(const FinishCommand& command) {
   MapTask task(command);
   GaussianMap<3> map = task.load();
   if (task.metadata.count(kFinalEntry) > 0)
-    throw std::runtime_error(command.map + ": is final already, finish the map that it was made from");
+    throw std::runtime_error(command.map + ": is already final; use the original map");
   checkScale("--finest-scale", command.finest_scale, map.scales());
   map = finish<3>(map, command.finest_scale);
   Json step = historyStep("finish");
   if (command.finest_scale > 0) {
     step["finest_scale"] = command.finest_scale;
-    task.metadata.erase("error_curves");  // their finest scale is no longer in the map
+    task.metadata.erase("error_curves");  // the curves are relative to a scale that is no longer in the map
   }
   addHistory(task.metadata, step);
   SaveOptions saving;
@@ -54,7 +54,7 @@ void run(const FinishCommand& command) {
     report.last = {{"bytes_before", before}, {"bytes_per_gaussian", per_gaussian}, {"error", error}};
     return task.report(report);
   }
-  std::printf("%s: %zu Gaussians, %s of %s, %.1f bytes a Gaussian; %s\n", command.output.path.c_str(), gaussians,
+  std::printf("%s: %zu Gaussians, %s of %s, %.1f bytes per Gaussian; %s\n", command.output.path.c_str(), gaussians,
               humanBytes(bytes).c_str(), humanBytes(before).c_str(), per_gaussian, error.c_str());
 }
 
@@ -64,8 +64,9 @@ void addFinish(CLI::App& app) {
   auto options = std::make_shared<FinishCommand>();
   Command command(app, "finish", kFinishHelp);
   addMapToMap(command, *options);
-  command.number("--finest-scale", options->finest_scale, 0, 63, "leave out finer scales");
-  command.number("--compression", options->compression, 1, 19, "zstd level; higher: smaller, slower to write");
+  command.number("--finest-scale", options->finest_scale, 0, 63, "leave out the scales that are finer than this one");
+  command.number("--compression", options->compression, 1, 19,
+                 "zstd level; a higher level gives a smaller file, but takes longer");
   addRunOptions(command, *options);
   command.onRun([options] { run(*options); });
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap hausdorff MAP|CLOUD REFERENCE...: distances of a map or a cloud to points, a mesh or another map; or the
-// likelihood of points under a map.
+// gaussmap hausdorff MAP|CLOUD REFERENCE...: measures the distances between a map or a cloud and a reference (points, a
+// mesh or another map), or the likelihood of points under a map.
 #include "commands/hausdorff/hausdorff.h"
 
 #include <algorithm>
@@ -15,22 +15,21 @@ namespace gaussmap::app {
 namespace {
 
 const Help kHausdorffHelp = {
-    "Distances between a map (or cloud) and a reference, in both directions",
+    "Measure the distances between a map (or cloud) and a reference, in both directions",
     "gaussmap hausdorff street.gmap scans/ --scale 2",
-    R"(A map is sampled; samples outside the bounds of their Gaussian (--samples-in) are rejected. The maximum over the
-samples grows with their number, so compare maxima only at equal --samples. Or use the quantiles, or the rows
-"2 sigma", whose samples fill the ellipsoids of 2 standard deviations.
+    R"(A map is sampled. Samples outside the bounds of their Gaussian (--samples-in) are rejected. The maximum distance
+grows with the number of samples, so compare maxima only at equal --samples, or compare quantiles. The rows "2 sigma"
+use only the samples within 2 standard deviations of their means.
 
-References: clouds are combined as in pcd2map. For a mesh, map->ref are exact distances to its surface, ref->map are
-those of --samples points on it. Of another map, the scale of the same number is sampled in the same way, so that the
-distance of equal maps is 0.
+Clouds are combined as in pcd2map. For a mesh, map->ref are exact distances to its surface, and ref->map are the
+distances of --samples points on it. Another map is sampled in the same way at the same scale, so the distance of two
+equal maps is 0.
 
---held-out: each reference point x scores ln((1 - e) p(x) + e / V), where p is the density of the scale in 1/m^3 (the
-Gaussians of the cell of x and of its neighbours), e is --background, and V the volume of the box around the points
-(each side at least 1 m). A point far from all Gaussians ("nowhere") scores the floor ln(e / V). Larger is better.
-Compare scores of the same points only. Make sure that the map was not built from these points.
+--held-out: a point x scores ln((1 - e) p(x) + e / V). p is the density of the scale [1/m^3], e is --background, and
+V is the volume of the box around the points. A point far from all Gaussians ("nowhere") scores the floor ln(e / V).
+Larger is better. Compare only scores of the same points. Make sure that the map was not built from these points.
 
---write-errors: fields x y z error rgb. Colours: blue = 0, cyan, green, yellow, red = 99 % quantile and above.
+--write-errors: fields x y z error rgb, from blue = 0 over cyan, green and yellow to red = 99 % quantile and above.
 
 More examples: gaussmap hausdorff street.gmap street.ply --scale 2 --write-errors errors.pcd
                gaussmap hausdorff street.gmap scans_never_used/ --held-out)"};
@@ -51,21 +50,22 @@ ReferenceKind kindOf(const std::vector<std::string>& paths) {
   return isMesh(paths.front()) ? ReferenceKind::Mesh : isMap(paths.front()) ? ReferenceKind::Map : ReferenceKind::Cloud;
 }
 
-/// Throws UsageError for options that do not go together.
+/// Throws UsageError for options or inputs that cannot be combined, and if the errors cannot be written.
 void check(const HausdorffCommand& command, bool of_map, ReferenceKind reference) {
   const bool writes = !command.errors.path.empty();
-  if (isMesh(command.subject)) throw UsageError(command.subject + ": a mesh can only be the reference");
+  if (isMesh(command.subject)) throw UsageError(command.subject + ": a mesh can only be the reference; name it last");
   for (const std::string& path : command.reference.paths)
     if (isMesh(path) && command.reference.paths.size() > 1)
       throw UsageError(path + ": a mesh must be the only reference");
   if (reference != ReferenceKind::Cloud && !command.reference.poses.empty())
-    throw UsageError("--poses: " + command.onlyReference() + " is no cloud");
+    throw UsageError("--poses: only for clouds, but the reference is " + command.onlyReference());
   if (command.held_out && !(of_map && reference == ReferenceKind::Cloud))
-    throw UsageError("--held-out scores a map with the points of clouds");
-  if (command.held_out && writes) throw UsageError("--write-errors writes distances: leave out --held-out");
+    throw UsageError("--held-out: needs a map, and clouds as the reference");
+  if (command.held_out && writes)
+    throw UsageError("--write-errors: writes distances, which --held-out does not measure");
   if (command.max_only && (of_map || reference != ReferenceKind::Cloud || command.held_out))
-    throw UsageError("--max-only compares clouds with clouds");
-  if (command.max_only && writes) throw UsageError("--write-errors needs all distances: leave out --max-only");
+    throw UsageError("--max-only: only for a cloud and clouds as the reference");
+  if (command.max_only && writes) throw UsageError("--write-errors: needs all distances; leave out --max-only");
   if (!of_map && reference == ReferenceKind::Map)
     throw UsageError(command.onlyReference() + ": to compare a cloud with a map, name the map first");
   if (!writes) return;
@@ -86,15 +86,17 @@ void run(const HausdorffCommand& command) {
 }
 
 void addSampleOptions(Command& command, SampleOptions& samples) {
-  command.number("--samples", samples.samples, 1, 100000000, "samples of a scale, divided among its Gaussians");
-  command.number("--at-least", samples.at_least, 1, 1000000, "samples of every Gaussian").rare();
+  command.number("--samples", samples.samples, 1, 100000000,
+                 "number of samples per scale, divided among its Gaussians");
+  command.number("--at-least", samples.at_least, 1, 1000000, "minimum number of samples per Gaussian").rare();
   command
-      .choiceOf("--sampling", samples.share, kShares, "samples in proportion to ellipsoid volume, or to weight (mass)")
+      .choiceOf("--sampling", samples.share, kShares,
+                "samples per Gaussian: in proportion to its volume, or to its weight (mass)")
       .rare();
   command
       .choiceOf("--samples-in", samples.bounds, kBounds,
-                "where samples of a Gaussian may lie: in the box of the finest cells that it represents, or (as in the "
-                "paper) anywhere in its cell")
+                R"(where samples of a Gaussian may lie: in the box of the finest cells that it represents (members),
+                or anywhere in its cell, as in the paper (cell))")
       .rare();
   command.seed(samples.seed, "seed of the samples").rare();
 }
@@ -108,23 +110,28 @@ void addHausdorff(CLI::App& app) {
   command
       .texts("reference", options->reference.paths, "PCD files or directories of them, or one mesh (PLY), or one map")
       .required();
-  const Option scale = command.scale(options->scale, "only this scale, 0 = finest; default: all");
+  const Option scale = command.scale(options->scale, "compare only this scale, 0 = finest; default: all scales");
   command.flag("--leaves", options->leaves, "compare all leaves of a compressed map at once").excludes(scale);
   addSampleOptions(command, options->samples);
-  command.flag("--max-only", options->max_only, "only the maxima of two clouds, which is faster");
-  command.flag("--held-out", options->held_out, "mean log-likelihood of the reference points under the map");
+  command.flag("--max-only", options->max_only, "compute only the maxima; for two clouds; faster");
+  command.flag("--held-out", options->held_out,
+               "compute the mean log-likelihood of the reference points under the map");
   command
-      .number("--background", options->scoring.background, 1e-12, 0.999999, "--held-out: share of points from anywhere")
+      .number("--background", options->scoring.background, 1e-12, 0.999999,
+              "for --held-out: share of points that may come from anywhere")
       .rare();
-  command.text("--write-errors", options->errors.path, "PCD file to write: points coloured by their distance");
+  command.text("--write-errors", options->errors.path, "PCD file to write: the points, coloured by their distance");
   command
       .choice("--direction", options->direction, {"forward", "backward"},
-              "--write-errors: forward = samples of the map, or points of the cloud; backward = the reference")
+              "for --write-errors: forward = samples of the map, or points of the cloud; backward = reference")
       .rare();
   command.force(options->errors.force, "replace an existing file of errors");
   addScanOptions(command, options->reference);
   command.threads(options->samples.threads);
   command.json(options->json);
+  command.files({"subject"}, {".gmap", ".pcd"});
+  command.files({"reference"}, {".pcd", ".ply", ".gmap"});
+  command.files({"--write-errors"}, {".pcd"});
   command.onRun([options] { run(*options); });
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap info MAP: what is in a map file.
+// gaussmap info MAP: prints the contents of a map file.
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -24,9 +24,9 @@ struct InfoCommand {
 
 const Help kInfoHelp = {
     "Print scales, cells, Gaussians, extent and size of a map", "gaussmap info street.gmap --json",
-    R"(bytes/m^2: compressed bytes per square metre of occupied cells, where a cell counts as its side squared.)"};
+    R"(bytes/m^2: compressed bytes per square metre of occupied cells. The area of a cell is the square of its side.)"};
 
-/// A map and what its file says about it.
+/// A map and the information in its file.
 struct MapInfo {
   GaussianMap<3> map;
   MapMetadata metadata;
@@ -51,17 +51,17 @@ std::string sentenceOf(const Json& step) {
   return sentence;
 }
 
-/// Whether more scans can be added, and if not, why.
+/// Returns whether the map accepts more scans, and if not, why.
 std::string stateOf(const GaussianMap<3>& map, const MapMetadata& metadata) {
   const auto final_error = metadata.find(kFinalEntry);
-  if (final_error != metadata.end()) return "final (takes no more scans): " + final_error->second;
-  if (map.isCompressed()) return "compressed: detail only where it is needed (takes no more scans)";
+  if (final_error != metadata.end()) return "final (accepts no more scans): " + final_error->second;
+  if (map.isCompressed()) return "compressed: detail only where it is needed (accepts no more scans)";
   const std::string occupancy = map.hasOccupancy() ? ", with occupancy" : "";
-  return (map.canGrow() ? "exact moments at the finest scale (takes more scans)" : "Gaussians only (final)") +
+  return (map.acceptsScans() ? "exact moments at the finest scale (accepts more scans)" : "Gaussians only (final)") +
          occupancy;
 }
 
-/// Adds to each scale how much of it are leaves.
+/// Adds to each scale the cells, Gaussians and weight of its leaves.
 void addLeaves(const GaussianMap<3>& map, Json& scales) {
   const double all = map.weight(map.scales() - 1);
   for (int s = 0; s < map.scales(); ++s) {
@@ -73,7 +73,7 @@ void addLeaves(const GaussianMap<3>& map, Json& scales) {
   }
 }
 
-/// Adds to each scale the bytes of its tiles.
+/// Adds to each scale the size of its tiles [bytes].
 void addBytes(const GaussianMap<3>& map, const MapFileSize& size, Json& scales) {
   for (int s = 0; s < map.scales(); ++s) {
     const auto index = static_cast<std::size_t>(s);
@@ -96,7 +96,7 @@ bool isCurve(const Json& curve) {
          });
 }
 
-/// The error curves of the refinement; empty if there are none, or if the entry is something else.
+/// Returns the error curves of the refinement; empty if the metadata has no valid curves.
 std::vector<ErrorCurve> curvesOf(const MapMetadata& metadata) {
   const Json json = jsonEntry(metadata, "error_curves");
   std::vector<ErrorCurve> curves;
@@ -135,8 +135,8 @@ Json jsonOf(const MapInfo& info, const std::string& path) {
                {"resolution", map.options().resolution},
                {"ratio", map.options().ratio},
                {"noise", map.options().noise},
-               {"finest", map.canGrow() || !map.scale(0).moments.empty() ? "moments" : "gaussians"},
-               {"takes_scans", map.canGrow()},
+               {"finest", map.acceptsScans() || !map.scale(0).moments.empty() ? "moments" : "gaussians"},
+               {"takes_scans", map.acceptsScans()},
                {"final", info.metadata.count(kFinalEntry) > 0},
                {"compressed", map.isCompressed()},
                {"occupancy", map.hasOccupancy()},
@@ -165,7 +165,7 @@ void printScales(const MapInfo& info) {
   }
   if (!info.map.isCompressed()) return;
   for (const Json& scale : info.scales)
-    std::printf("finest at scale %d: %zu cells, %zu Gaussians, %.3g %% of the points\n", scale["scale"].get<int>(),
+    std::printf("leaves of scale %d: %zu cells, %zu Gaussians, %.3g %% of the points\n", scale["scale"].get<int>(),
                 scale["leaf_cells"].get<std::size_t>(), scale["leaf_gaussians"].get<std::size_t>(),
                 100.0 * scale["leaf_share"].get<double>());
 }
@@ -195,7 +195,7 @@ void run(const InfoCommand& command) {
   const MapInfo info = readInfo(command.map);
   if (!command.plot.path.empty()) {
     if (info.curves.empty())
-      throw std::runtime_error(command.map + ": has no error curves; gaussmap refine makes them");
+      throw std::runtime_error(command.map + ": has no error curves; use gaussmap refine to measure them");
     plotCurves(info.curves, command.plot.path);
   }
   if (command.json)
@@ -213,6 +213,7 @@ void addInfo(CLI::App& app) {
   command.text("--plot", options->plot.path, "draw the error against the number of Gaussians (.svg)");
   command.force(options->plot.force, "replace an existing plot");
   command.json(options->json);
+  command.files({"--plot"}, {".svg"});
   command.onRun([options] { run(*options); });
 }
 

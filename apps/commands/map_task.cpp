@@ -16,6 +16,7 @@ void addMapToMap(Command& command, MapTaskOptions& options) {
 
 void addMapOutput(Command& command, MapTaskOptions& options) {
   command.output(options.output, "map file to write (.gmap)");
+  command.files({"--output"}, {".gmap"});
 }
 
 void addRunOptions(Command& command, MapTaskOptions& options) {

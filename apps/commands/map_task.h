@@ -9,7 +9,7 @@
 
 namespace gaussmap::app {
 
-/// The options that all commands share that turn maps into a map.
+/// The options that all commands with maps as input and a map as output share.
 struct MapTaskOptions {
   std::string map;  // the input
   Output output;
@@ -23,36 +23,37 @@ void addMapOutput(Command& command, MapTaskOptions& options);
 /// Adds --threads and --json.
 void addRunOptions(Command& command, MapTaskOptions& options);
 
-/// What a command says about the map that it has written.
+/// The report of a command about the map that it has written.
 struct MapReport {
   std::string counts;  // Gaussians per scale, see perScale()
-  std::string before;  // text in front of them, with its comma
+  std::string before;  // text before the counts, with its comma
   bool tell_time = false;
   Json scales;       // see scalesOf()
-  Json first, last;  // further members of the JSON: before "scales", after "bytes"
+  Json first, last;  // more members of the JSON object: before "scales" and after "bytes"
 };
 
-/// A command that writes a map: load, compute, add to the history, save, report.
+/// The steps of a command that writes a map: load, add a step to the history, save, report.
 class MapTask {
  public:
-  /// Checks, before any work is done, that the output can be written and destroys no input. Starts the clock.
+  /// Checks that the output can be written and does not replace an input. Starts the clock. Throws UsageError.
   MapTask(const MapTaskOptions& options, const std::vector<std::filesystem::path>& inputs);
   explicit MapTask(const MapTaskOptions& options) : MapTask(options, {options.map}) {}
 
-  /// Loads a map with its metadata, which save() hands on.
+  /// Loads a map and its metadata, which save() writes again.
   GaussianMap<3> load(const std::string& path);
   GaussianMap<3> load() { return load(options_.map); }
 
   MapMetadata metadata;
-  /// Adds {"command", "version"} and `more` to the history, and drops error curves, which describe the map as it was.
+  /// Adds {"command", "version"} and the members of `more` to the history. Drops the error curves, because they
+  /// describe the old map.
   void addStep(const char* command, const Json& more = Json::object());
 
-  /// `save.overwrite` and `save.threads` are set by the options of the command.
+  /// Saves the map. The options of the command replace `save.overwrite` and `save.threads`.
   void save(const GaussianMap<3>& map, SaveOptions save = {}) const;
 
-  /// Prints the result, after save(): one line, or JSON.
+  /// Prints the result as one line or as JSON. Call it after save().
   void report(const MapReport& report) const;
-  /// The same with the scales of the map. `whole`: the map that it was made from, whose counts are printed too.
+  /// The same with the scales of the map. `whole` is the map that it was made from; its counts are printed too.
   void report(const GaussianMap<3>& map) const;
   void report(const GaussianMap<3>& map, const GaussianMap<3>& whole, const Json& last = {}) const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap merge A B... -o OUT: several maps into one.
+// gaussmap merge A B... -o OUT: merges several maps into one.
 #include "gaussmap/editing/merge_maps.h"
 
 #include <cmath>
@@ -11,6 +11,7 @@
 #include "common/command.h"
 #include "common/report.h"
 #include "gaussmap/core/error.h"
+#include "gaussmap/editing/transform_map.h"
 #include "gaussmap/io/pcd/map_pcd.h"
 
 namespace gaussmap::app {
@@ -25,10 +26,9 @@ struct MergeCommand : MapTaskOptions {
 const Help kMergeHelp = {
     "Merge several maps into one",
     R"(gaussmap merge monday.gmap tuesday.gmap -o both.gmap --transform "12.5 -3 0 0 0 0.7071 0.7071")",
-    R"(If the maps were built from parts of the scans, the finest scale of the result equals that of a map of all
-scans, to the last bit. Maps that were moved or are final have no exact moments: they are merged as Gaussians,
-and --exact refuses them. Poses are those of the frame of the second map, the third, ... in the frame of the
-first map.)"};
+    R"(If the maps were built from parts of the scans, the finest scale of the result is exactly that of a map of all
+scans. Maps that were moved or are final have no exact moments. They are merged as Gaussians, and --exact refuses
+them. Give --transform once per map, except for the first map: its pose in the frame of the first map.)"};
 
 std::string gridOf(const GaussianMap<3>& map) {
   const MapOptions& options = map.options();
@@ -38,32 +38,33 @@ std::string gridOf(const GaussianMap<3>& map) {
 
 void requireExact(const GaussianMap<3>& map, const std::string& path, bool is_moved) {
   if (is_moved)
-    throw UsageError("--exact: a map that is moved or resampled merges as Gaussians; leave one of the two out");
-  if (!map.canGrow())
+    throw UsageError("--exact: a moved or resampled map has no exact moments; leave out --exact to merge Gaussians");
+  if (!map.acceptsScans())
     throw FileError(path, std::string(map.isCompressed() ? "is compressed" : "holds Gaussians only") +
-                              ": it has no exact moments to merge; leave out --exact to merge Gaussians");
+                              ", so it has no exact moments; leave out --exact to merge Gaussians");
 }
 
-/// Loads the maps one after the other, moves each into the frame and cells of the first, and merges it.
-GaussianMap<3> merged(const MergeCommand& command, const std::vector<RigidMotion<3>>& motions, MapTask& task) {
+/// Loads the maps one after the other, transforms each into the frame and grid of the first map, and merges it.
+GaussianMap<3> merged(const MergeCommand& command, const Motions& motions, MapTask& task) {
   const std::vector<std::string>& paths = command.maps;
   GaussianMap<3> merged = task.load(paths.front());
-  if (command.exact) requireExact(merged, paths.front(), !motions.empty());
+  if (command.exact) requireExact(merged, paths.front(), !motions.poses.empty());
   for (std::size_t i = 1; i < paths.size(); ++i) {
     GaussianMap<3> next = loadAny(paths[i]);
     if (command.exact) requireExact(next, paths[i], false);
     TransformOptions to;
     to.grid = merged.options();
+    to.covariance = motions.covariance;
     to.threads = command.threads;
     if (next.options() == merged.options())
       to.grid.reset();
     else if (!command.resample)
       throw FileError(paths[i], "has " + gridOf(next) + "; " + paths.front() + " has " + gridOf(merged) +
-                                    ": --resample sorts it into these cells");
+                                    "; use --resample to convert it to this grid");
     else if (command.exact)
       requireExact(next, paths[i], true);
-    if (to.grid || !motions.empty())
-      next = transformMap<3>(next, motions.empty() ? RigidMotion<3>() : motions[i - 1], to);
+    if (to.grid || !motions.poses.empty())
+      next = transformMap<3>(next, motions.poses.empty() ? Pose() : motions.poses[i - 1], to);
     MergeMapsOptions options;
     options.threads = command.threads;
     merged = mergeMaps<3>(merged, next, options);
@@ -77,10 +78,10 @@ void run(const MergeCommand& command) {
   const std::size_t count = inputs.size();
   if (!command.motion.file.empty()) inputs.emplace_back(command.motion.file);
   MapTask task(command, inputs);
-  if (count < 2) throw UsageError("merge takes two maps at least");
+  if (count < 2) throw UsageError("merge needs at least two maps");
   const GaussianMap<3> map = merged(command, motionsOf(command.motion, to_move), task);
 
-  Json step = {{"maps", count}, {"exact", map.canGrow()}};
+  Json step = {{"maps", count}, {"exact", map.acceptsScans()}};
   if (!command.motion.transforms.empty()) step["transforms"] = command.motion.transforms;
   if (!command.motion.file.empty()) step["transform_file"] = command.motion.file;
   if (!command.motion.covariance.empty()) step["pose_covariance"] = command.motion.covariance;
@@ -89,10 +90,10 @@ void run(const MergeCommand& command) {
   const double points = map.weight(map.scales() - 1);
   MapReport report;
   report.before = std::to_string(count) + " maps, " + std::to_string(std::llround(points)) + " points, " +
-                  (map.canGrow() ? "exact moments, " : "Gaussians only, ");
+                  (map.acceptsScans() ? "exact moments, " : "Gaussians only, ");
   report.counts = perScale(map);
   report.scales = scalesOf(map);
-  report.first = {{"maps", count}, {"points", points}, {"exact", map.canGrow()}};
+  report.first = {{"maps", count}, {"points", points}, {"exact", map.acceptsScans()}};
   report.tell_time = true;
   task.report(report);
 }
@@ -105,9 +106,10 @@ void addMerge(CLI::App& app) {
   command.texts("maps", options->maps, "maps (.gmap, or PCD of Gaussians)").required();
   addMapOutput(command, *options);
   addMotionOptions(command, options->motion);
-  command.flag("--resample", options->resample, "sort maps of other cells into those of the first map");
+  command.flag("--resample", options->resample, "convert maps with another grid to the grid of the first map");
   command.flag("--exact", options->exact, "refuse maps that cannot be merged exactly");
   addRunOptions(command, *options);
+  command.files({"maps"}, {".gmap", ".pcd"});
   command.onRun([options] { run(*options); });
 }
 

@@ -2,7 +2,6 @@
 #include "commands/motion.h"
 
 #include <charconv>
-#include <optional>
 #include <sstream>
 
 #include "common/command.h"
@@ -30,62 +29,59 @@ Pose poseIn(const std::string& text) {
   const std::vector<double> n = numbersIn("--transform", text);
   if (n.size() != 7)
     throw UsageError("--transform '" + text + "': " + std::to_string(n.size()) +
-                     " numbers, expected are the seven of x y z qx qy qz qw, in quotes");
+                     " numbers found, expected the seven of x y z qx qy qz qw, in quotes");
   const Pose pose{{n[0], n[1], n[2]}, Pose::Rotation(n[6], n[3], n[4], n[5])};
   const std::string fault = poseFault(pose);
   if (!fault.empty()) throw UsageError("--transform '" + text + "': " + fault);
   return normalised(pose);
 }
 
-PoseCovariance<3> covarianceIn(const std::string& text) {
+PoseCovariance covarianceIn(const std::string& text) {
   const std::vector<double> n = numbersIn("--pose-covariance", text);
-  PoseCovariance<3> covariance = PoseCovariance<3>::Zero();
+  PoseCovariance covariance = PoseCovariance::Zero();
   if (n.size() == 6)
     for (Eigen::Index i = 0; i < 6; ++i) covariance(i, i) = n[static_cast<std::size_t>(i)];
   else if (n.size() == 36)
     for (Eigen::Index i = 0; i < 36; ++i) covariance(i / 6, i % 6) = n[static_cast<std::size_t>(i)];
   else
     throw UsageError("--pose-covariance: " + std::to_string(n.size()) +
-                     " numbers, expected are the 36 of a matrix, or the 6 of its diagonal");
+                     " numbers found, expected the 36 of a matrix or the 6 of its diagonal");
   return covariance;
 }
 
 }  // namespace
 
 void addMotionOptions(Command& command, MotionInput& input) {
-  const Option transform =
-      command
-          .texts("--transform", input.transforms,
-                 "pose of the map's frame in the target frame, \"x y z qx qy qz qw\" [m]; once per map to move")
-          .onePerUse();
+  const Option transform = command
+                               .texts("--transform", input.transforms,
+                                      "pose of the map in the target frame, \"x y z qx qy qz qw\" [m]; once per map")
+                               .onePerUse();
   command
-      .text("--transform-file", input.file,
-            "file of these poses, one line per map: TUM, KITTI, or the name of the map in front")
+      .text("--transform-file", input.file, "file of these poses, one line per map: TUM, KITTI, or map name and pose")
       .excludes(transform);
   command
       .text("--pose-covariance", input.covariance,
-            "covariance of these poses, which widens the Gaussians: the 6 x 6 numbers of x y z [m] and rotations about "
-            "x y z [rad], or the 6 of the diagonal, in quotes")
+            R"(covariance of these poses, which widens the Gaussians: in quotes, 6 x 6 numbers for x y z [m]
+            and the rotations about x y z [rad], or the 6 numbers of the diagonal)")
       .rare();
+  command.files({"--transform-file"});
 }
 
-std::vector<RigidMotion<3>> motionsOf(const MotionInput& input, const std::vector<std::filesystem::path>& maps) {
-  std::vector<Pose> poses;
+Motions motionsOf(const MotionInput& input, const std::vector<std::filesystem::path>& maps) {
+  Motions motions;
+  std::vector<Pose>& poses = motions.poses;
   if (!input.file.empty()) {
     poses = posesForScans(readPoseFile(input.file), maps);
   } else {
     for (const std::string& text : input.transforms) poses.push_back(poseIn(text));
     if (!poses.empty() && poses.size() != maps.size())
       throw UsageError("--transform: given " + std::to_string(poses.size()) + " times for " +
-                       std::to_string(maps.size()) + (maps.size() == 1 ? " map" : " maps") + " to move, once each");
+                       std::to_string(maps.size()) + (maps.size() == 1 ? " map" : " maps") +
+                       " to move, expected once per map");
   }
   if (poses.empty() && !input.covariance.empty())
-    throw UsageError("--pose-covariance: belongs to --transform or --transform-file");
-  std::vector<RigidMotion<3>> motions;
-  for (const Pose& pose : poses) {
-    motions.push_back(rigidMotion(pose));
-    if (!input.covariance.empty()) motions.back().covariance = covarianceIn(input.covariance);
-  }
+    throw UsageError("--pose-covariance: needs --transform or --transform-file");
+  if (!input.covariance.empty()) motions.covariance = covarianceIn(input.covariance);
   return motions;
 }
 

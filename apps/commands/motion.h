@@ -2,15 +2,16 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/command.h"
-#include "gaussmap/editing/transform_map.h"
+#include "gaussmap/core/pose.h"
 
 namespace gaussmap::app {
 
-/// How maps are moved: the same options for every command that moves maps.
+/// The options that all commands that move maps share.
 struct MotionInput {
   std::vector<std::string> transforms;  // "x y z qx qy qz qw"
   std::string file;
@@ -18,7 +19,12 @@ struct MotionInput {
 };
 void addMotionOptions(Command& command, MotionInput& input);
 
-/// The motion of each map, in their order; empty if no motion is given. Throws UsageError, FileError.
-std::vector<RigidMotion<3>> motionsOf(const MotionInput& input, const std::vector<std::filesystem::path>& maps);
+struct Motions {
+  std::vector<Pose> poses;                   // one per map, in the order of the maps; empty if no motion is given
+  std::optional<PoseCovariance> covariance;  // of every pose
+};
+
+/// Returns one motion per map. Throws UsageError if an option is wrong, and FileError if the file of poses is.
+Motions motionsOf(const MotionInput& input, const std::vector<std::filesystem::path>& maps);
 
 }  // namespace gaussmap::app

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap pcd2map IN... -o OUT.gmap: builds a map from scans; or --update MAP: adds scans to a map.
+// gaussmap pcd2map IN... -o OUT.gmap: builds a map from scans. With --update MAP: adds scans to a map.
 #include "commands/pcd2map/pcd2map.h"
 
 #include <memory>
@@ -15,16 +15,16 @@ namespace {
 
 const Help kPcd2mapHelp = {
     "Build a map from PCD scans", "gaussmap pcd2map scans/*.pcd -o street.gmap --resolution 0.2 --budget 3",
-    R"(The pose of each scan is the VIEWPOINT of its file, unless --poses gives another one or --frame map says that the
-points are already in the map frame. A file of poses has one line per scan: TUM (t x y z qx qy qz qw), KITTI
-(12 numbers), or the name of the scan in front.
+    R"(The pose of a scan is the VIEWPOINT of its file, or comes from --poses. A file of poses has one line per scan:
+TUM (t x y z qx qy qz qw), KITTI (12 numbers), or the name of the scan and its pose. With --frame map, the points
+are already in the map frame.
 
 --update adds scans to a map file and writes only the tiles that change. The finest scale then equals that of a map
-of all scans. Coarse cells with new points are rebuilt within the budget of the whole scale: --budget, or the budget
-that the map was made with, or else as many Gaussians per cell as the scale has. Cells keep their occupancy, new
-cells count as occupied. The update is atomic: readers see either the old or the new file.
+of all scans. Coarse cells with new points are rebuilt within --budget (default: the budget of the last refinement,
+or else the present number of Gaussians per cell). Cells keep their occupancy, and new cells count as occupied.
+Readers see either the old or the new file.
 
---online processes one scan after the other, marks what the laser sees through as free, and deletes what has moved.)"};
+--online adds one scan after the other, marks cells that the laser sees through as free, and deletes what has moved.)"};
 
 void run(const Pcd2mapOptions& options) {
   try {
@@ -63,23 +63,23 @@ void addOptions(Command& command, Pcd2mapOptions& options) {
   command.text("--update", options.update, "map file to add the scans to (.gmap)");
   command.number("--resolution", options.map.resolution, "side of the finest cells [m]");
   command.number("--scales", options.map.scales, "number of scales");
-  command.number("--ratio", options.map.ratio, "side of the cells of the next scale, in cells of this one").rare();
-  command.number("--noise", options.map.noise, "noise floor of every Gaussian [m]; 0: resolution / 20").rare();
+  command.number("--ratio", options.map.ratio, "ratio of the cell sides of two neighbouring scales").rare();
+  command.number("--noise", options.map.noise, "noise floor of every Gaussian [m]; 0 = resolution / 20").rare();
   addBudgetOptions(command, options.budget);
   addOnlineOptions(command, options.online);
   addScanOptions(command, options.input);
   command
-      .text(
-          "--max-memory", options.max_memory,
-          "build within this memory (suffix k, M or G), tile by tile through a temporary file beside the map; the map "
-          "is the same, without error curves")
+      .text("--max-memory", options.max_memory,
+            R"(memory limit [bytes], with suffix k, M or G: builds tile by tile, with a temporary file beside the map;
+          the map is the same, but has no error curves)")
       .rare();
   command
       .flag("!--no-curves", options.budget.curves,
-            "do not measure the error curves of other budgets (gaussmap info); saves time")
+            "do not measure the error curves of other budgets (see gaussmap info); faster")
       .rare();
   command.threads(options.budget.refine.threads).rare();
   command.json(options.json);
+  command.files({"--output", "--update"}, {".gmap"});
   command.excludes("--update", {"--output", "--force", "--resolution", "--scales", "--ratio", "--noise", "--online",
                                 "--max-gaussians", "--max-bytes", "--max-error", "--method", "--max-memory"});
 }

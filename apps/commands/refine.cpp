@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap refine MAP -o OUT --budget X: another number of Gaussians at the coarse scales.
+// gaussmap refine MAP -o OUT --budget X: changes the number of Gaussians at the coarse scales.
 #include <memory>
 #include <stdexcept>
 
@@ -18,16 +18,15 @@ struct RefineCommand : MapTaskOptions {
 const Help kRefineHelp = {
     "Change the number of Gaussians at the coarse scales of a map",
     "gaussmap refine street.gmap -o fine.gmap --budget 4",
-    R"(The coarse scales are computed again from the finest one. The result equals that of pcd2map with the same
-budget and seed. A compressed map cannot be refined, because its finest scale is incomplete.)"};
+    R"(The coarse scales are rebuilt from the finest scale. The result equals that of pcd2map with the same budget and
+seed. A compressed map cannot be refined, because its finest scale is incomplete.)"};
 
 void run(RefineCommand command) {
   MapTask task(command);
   checkBudget(command.budget);
   GaussianMap<3> map = task.load();
   if (map.isCompressed())
-    throw std::runtime_error(command.map +
-                             ": is compressed, its finest scale is incomplete: refine the map that it was made from");
+    throw std::runtime_error(command.map + ": is compressed, so its finest scale is incomplete; use the original map");
   command.budget.refine.threads = command.threads;
   map = refineWithin(std::move(map), command.budget, task.metadata, historyStep("refine"));
   task.save(map);

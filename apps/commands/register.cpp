@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap register: where scans were taken, or how other maps lie, in the frame of a map.
+// gaussmap register: finds the poses of scans, or of other maps, in the frame of a map.
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -19,15 +19,16 @@ namespace {
 const Help kRegisterHelp = {
     "Find the poses of scans, or of other maps, in the frame of a map",
     "gaussmap register scans/ street.gmap --tum poses.tum",
-    R"(Prints the pose of every scan (x y z qx qy qz qw), its standard deviations, and the share of the scan that lies on
-the map. The search for the first scan starts at --guess or at the VIEWPOINT of its file, for every other scan at the
-pose of the scan before.
-A map can be given in place of a scan: its Gaussians are moved onto the other map, starting from where they are.
-"degenerate" means that some direction is unobservable, for example along a corridor.)"};
+    R"(Prints the pose of every scan (x y z qx qy qz qw), its standard deviations, and its fitness: the share of the
+scan that lies on the map. The search for the first scan starts at --guess, or else at the VIEWPOINT of its file.
+For every other scan it starts at the pose of the scan before. "degenerate" means that some direction is
+unobservable, for example along a corridor.
+
+Maps can be given in place of scans. Without --guess, the search for the first map starts at its present place.)"};
 
 struct RegisterCommand {
-  std::vector<std::string> inputs;  // scans or maps, and the map to register with as the last
-  std::vector<double> guess;        // x y z qx qy qz qw; empty: the VIEWPOINT of the first scan, a map as it is
+  std::vector<std::string> inputs;  // scans or maps; the last one is the map to register with
+  std::vector<double> guess;        // x y z qx qy qz qw; empty: the VIEWPOINT of the first scan; identity for a map
   std::string tum;
   bool force = false;
   RegistrationOptions options;
@@ -40,7 +41,7 @@ Pose guessOf(const RegisterCommand& command, const std::filesystem::path& first)
     if (isMap(first)) return guess;
     guess = PcdReader(first).header().viewpoint;
     if (const std::string fault = poseFault(guess); !fault.empty())
-      throw FileError(first, "its VIEWPOINT is no first guess: " + fault + "; give --guess");
+      throw FileError(first, "its VIEWPOINT cannot be the first guess: " + fault + "; use --guess");
     return normalised(guess);
   }
   const std::vector<double>& g = command.guess;
@@ -93,15 +94,15 @@ void run(const RegisterCommand& command) {
   }
   Pose guess = guessOf(command, scans.front());
   const GaussianMap<3> map = loadAny(map_path);
-  if (map.empty()) throw FileError(map_path, "is an empty map: there is nothing to register with");
+  if (map.empty()) throw FileError(map_path, "the map is empty, so no scan can be registered with it");
 
   Json all = Json::array();
   std::vector<TimedPose> trajectory;
   for (const std::filesystem::path& path : scans) {
     const RegistrationResult result = registerFile(path, map, guess, command.options);
     if (result.fitness == 0.0)
-      throw FileError(path, "meets nothing of the map from where it is looked for: give a nearer --guess");
-    guess = result.pose;  // of the next scan
+      throw FileError(path, "no part of it lies on the map after the search; use a better --guess");
+    guess = result.pose;  // for the next scan
     trajectory.push_back({double(trajectory.size()), result.pose});
     if (command.json)
       all.push_back(jsonOf(path, result));
@@ -121,17 +122,20 @@ void addRegister(CLI::App& app) {
       .required()
       .atLeast(2);
   command.numbers("--guess", options->guess, 7, -1e12, 1e12,
-                  "pose at which the search for the first scan starts: x y z qx qy qz qw");
-  command.text("--tum", options->tum, "write the poses, one line per scan: number x y z qx qy qz qw");
+                  "pose at which the search for the first scan starts: x y z [m] qx qy qz qw");
+  command.text("--tum", options->tum, "TUM file to write: one line per scan, number x y z qx qy qz qw");
   command.force(options->force, "replace an existing file of poses");
   command
       .number("--scan-resolution", options->options.resolution, 0.0, 1e6,
-              "side of the cells of the scan [m], 0 = as the finest cells of the map")
+              "side of the cells of the scan [m], 0 = side of the finest cells of the map")
       .rare();
-  command.number("--kernel", options->options.kernel, 1e-3, 1e6, "standard deviations at which a residual counts half")
+  command
+      .number("--kernel", options->options.kernel, 1e-3, 1e6, "a residual of this many standard deviations counts half")
       .rare();
   command.threads(options->options.threads);
   command.json(options->json);
+  command.files({"inputs"}, {".pcd", ".gmap"});
+  command.files({"--tum"});
   command.onRun([options] { run(*options); });
 }
 

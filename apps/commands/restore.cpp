@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap restore MAP REMOVED -o OUT: brings deleted clusters back.
+// gaussmap restore MAP REMOVED -o OUT: restores deleted clusters.
 #include <memory>
 #include <stdexcept>
 
@@ -7,7 +7,7 @@
 #include "commands/map_task.h"
 #include "common/command.h"
 #include "common/report.h"
-#include "editing/restore.h"
+#include "editing/restore_clusters.h"
 #include "gaussmap/core/error.h"
 #include "io/pcd/removed_pcd.h"
 
@@ -22,15 +22,17 @@ struct RestoreCommand : MapTaskOptions {
 };
 
 const Help kRestoreHelp = {
-    "Bring back what pcd2map --online has deleted",
+    "Restore clusters that pcd2map --online has deleted",
     "gaussmap restore street.gmap removed.pcd -o whole.gmap --box -5 0 -1 5 20 3",
-    R"(The finest scale is exactly what it would be if the clusters had not been deleted. The coarse scales are
-computed again with as many Gaussians as they have. A cluster that is restored twice counts twice.)"};
+    R"(The finest scale becomes exactly what it would be if the clusters had not been deleted. The coarse scales are
+rebuilt with the same number of Gaussians. A cluster that is restored twice counts twice.)"};
 
 std::function<bool(const Vector<3>&)> region(const std::vector<double>& box) {
   if (box.empty()) return [](const Vector<3>&) { return true; };
   const Vector<3> low(box[0], box[1], box[2]), high(box[3], box[4], box[5]);
-  if ((low.array() > high.array()).any()) throw UsageError("--box: takes the low corner first: x0 y0 z0 x1 y1 z1");
+  if ((low.array() > high.array()).any())
+    throw UsageError(
+        "--box: no coordinate of the first corner may be above that of the second corner: x0 y0 z0 x1 y1 z1");
   return
       [low, high](const Vector<3>& p) { return !(p.array() < low.array()).any() && !(p.array() > high.array()).any(); };
 }
@@ -39,9 +41,9 @@ void run(const RestoreCommand& command) {
   const auto isInside = region(command.box);
   MapTask task(command, {command.map, command.removed});
   const GaussianMap<3> old = task.load();
-  if (!old.canGrow())
+  if (!old.acceptsScans())
     throw FileError(command.map, std::string(old.isCompressed() ? "is compressed" : "holds Gaussians only") +
-                                     ": nothing can be brought back into it exactly");
+                                     ", so clusters cannot be restored exactly; use a map with moments");
   const std::vector<RemovedCluster<3>> removed = readRemoved(command.removed);
   RestoredMap restored;
   try {
@@ -57,7 +59,7 @@ void run(const RestoreCommand& command) {
   task.save(restored.map);
   MapReport report;
   report.before = std::to_string(restored.clusters) + (restored.clusters == 1 ? " cluster" : " clusters") + " of " +
-                  std::to_string(restored.points) + " points brought back, ";
+                  std::to_string(restored.points) + " points restored, ";
   report.counts = perScale(restored.map);
   report.scales = scalesOf(restored.map);
   report.first = counts;
@@ -74,8 +76,10 @@ void addRestore(CLI::App& app) {
       .required();
   addMapOutput(command, *options);
   command.numbers("--box", options->box, 6, -1e12, 1e12,
-                  "only clusters whose mean lies in this box: x0 y0 z0 x1 y1 z1 [m]");
+                  "restore only clusters whose mean is in this box: x0 y0 z0 x1 y1 z1 [m]");
   addRunOptions(command, *options);
+  command.files({"map"}, {".gmap"});
+  command.files({"removed"}, {".pcd"});
   command.onRun([options] { run(*options); });
 }
 

@@ -11,14 +11,17 @@
 namespace gaussmap::app {
 
 void addScanPaths(Command& command, ScanInput& input) {
-  command.texts("scans", input.paths, "PCD files, or directories of them (in natural order)").required();
+  command.texts("scans", input.paths, "PCD files, or directories of PCD files (in natural order)").required();
+  command.files({"scans"}, {".pcd"});
 }
 
 void addScanOptions(Command& command, ScanInput& input) {
   command.text("--poses", input.poses,
-               "file of the sensor poses in the map frame (TUM or KITTI); default: the VIEWPOINT of each scan");
+               "file with the sensor poses in the map frame (TUM or KITTI); default: the VIEWPOINT of each scan");
   command.choice("--frame", input.frame, {"sensor", "map"}, "frame of the points in the files");
-  command.number("--max-range", input.max_range, 0.0, 1e9, "drop points farther from the sensor [m]; 0: no limit");
+  command.number("--max-range", input.max_range, 0.0, 1e9,
+                 "drop points farther from the sensor than this [m]; 0 = no limit");
+  command.files({"--poses"});
 }
 
 PcdScans openScans(const ScanInput& input) {

@@ -10,7 +10,7 @@
 
 namespace gaussmap::app {
 
-/// Which clouds, and how they lie in the map: the same options for every command that reads scans.
+/// The scans and their frame: the options that all commands that read scans share.
 struct ScanInput {
   std::vector<std::string> paths;
   std::string poses;
@@ -22,13 +22,13 @@ void addScanPaths(Command& command, ScanInput& input);
 /// Adds --poses, --frame and --max-range.
 void addScanOptions(Command& command, ScanInput& input);
 
-/// findScans(); its warnings go to stderr.
+/// Calls findScans() and prints its warnings on stderr.
 PcdScans openScans(const ScanInput& input);
 AccumulateOptions accumulateOptions(const ScanInput& input, double resolution, int threads);
-/// All points of the scans in the map frame. Throws if there are none.
+/// Returns all points of the scans [m, map frame]. Throws std::runtime_error if no point is usable.
 std::vector<Vector<3>> readPoints(const ScanInput& input, int threads);
 
-/// "scan.pcd", or "scan.pcd and 4 more".
+/// The name of the scans in messages: "scan.pcd", or "scan.pcd and 4 more".
 std::string nameOf(const Scans& scans);
 
 }  // namespace gaussmap::app

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap segments IN... -o OUT.{pcd,svg,geojson,csv}: a 2-D map of linked line segments.
+// gaussmap segments IN... -o OUT.{pcd,svg,geojson,csv}: builds a 2-D map of linked line segments.
 #include "commands/segments/segments.h"
 
 #include <algorithm>
@@ -23,10 +23,11 @@ namespace {
 const Help kSegmentsHelp = {
     "Build a 2-D map of linked line segments from scans of a planar laser",
     "gaussmap segments lab.log.gz -o lab.svg -o lab.pcd --every 2 --evaluate lab.log.gz",
-    R"(Reads the scans in their order and writes one map: the walls that were seen, with free space on their left side,
-linked into chains. A map that was written as .pcd can be the input again, to evaluate it or to write another format.)"};
+    R"(Reads the scans in their order and writes one map of segments. Each segment has the free space on its left side.
+Neighbouring segments are linked into chains. A map that was written as .pcd can be the input too, to evaluate it
+or to write it in another format.)"};
 
-/// Throws UsageError for outputs that cannot be written, or would destroy one of the files that are read.
+/// Throws UsageError for outputs that cannot be written or would destroy an input file.
 void checkFiles(const SegmentsCommand& command, std::vector<std::filesystem::path> inputs) {
   for (const std::string& file : {command.input.scans.poses, command.evaluate, command.walls})
     if (!file.empty()) inputs.emplace_back(file);
@@ -35,17 +36,18 @@ void checkFiles(const SegmentsCommand& command, std::vector<std::filesystem::pat
   checkOutputs(outputs, command.force, inputs);
 }
 
-/// Throws UsageError for options that a finished map has no use for.
+/// Throws UsageError for options that do not apply if the input is a finished map.
 void checkFinished(const Command& given, const SegmentsCommand& command) {
   std::string option = givenFitterOption(given);
   if (!command.stats.empty()) option = "--stats";
   if (command.evidence) option = "--evidence";
   if (command.every > 1) option = "--every";
   if (!option.empty())
-    throw UsageError(option + ": " + command.input.scans.paths[0] + " is a finished map of segments");
+    throw UsageError(option + ": only for scans, but " + command.input.scans.paths[0] +
+                     " is a finished map of segments");
 }
 
-/// Reads a finished map, or fits one to scans.
+/// Reads a finished map, or fits a map to scans.
 FittedSegments mapOf(const Command& given, const SegmentsCommand& command) {
   const std::vector<std::string>& paths = command.input.scans.paths;
   const bool is_pcd = paths.size() == 1 && !isCarmenLogName(paths[0]) && !std::filesystem::is_directory(paths[0]);
@@ -55,7 +57,7 @@ FittedSegments mapOf(const Command& given, const SegmentsCommand& command) {
     finished.map = loadSegmentsPcd(paths[0]);
     return finished;
   }
-  fitterOptions(command.fitter);  // its complaints come before the work of reading
+  fitterOptions(command.fitter);  // throws for wrong options before the scans are read
   makeUtility(command.fitter);
   const LaserScans input = readLaserScans(command.input);
   checkFiles(command, input.files);
@@ -129,13 +131,17 @@ void addSegments(CLI::App& app) {
   command.texts("-o,--output", options->outputs, "map to write: .pcd, .svg, .geojson or .csv; repeatable").onePerUse();
   command.force(options->force, "replace existing outputs");
   command.flag("--evidence", options->evidence, "draw the evidence of the segments into the .svg");
-  command.number("--every", options->every, 1, 1000000, "map every N-th scan only, beginning with the first");
-  command.text("--stats", options->stats, "write what each scan changed (.csv)");
+  command.number("--every", options->every, 1, 1000000, "use only every N-th scan, starting with the first one");
+  command.text("--stats", options->stats, "CSV file to write: what each scan changed");
   command.text("--evaluate", options->evaluate,
-               "score the map on a log, scan or directory; of an input, on the scans that --every leaves out");
+               "score the map on a log, scan or directory; for an input, on the scans that --every leaves out");
   command.text("--walls", options->walls, "score the map against true walls (walls.pcd of simulate plan)");
   addFitterOptions(command, options->fitter);
   command.json(options->json);
+  command.files({"--output"}, {".pcd", ".svg", ".geojson", ".csv"});
+  command.files({"--stats"}, {".csv"});
+  command.files({"--evaluate"}, {".log", ".log.gz", ".pcd"});
+  command.files({"--walls"}, {".pcd"});
   command.onRun([command, options] { run(command, *options); });
 }
 

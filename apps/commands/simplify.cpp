@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap simplify MAP -o OUT: fewer Gaussians, merged from the existing ones.
+// gaussmap simplify MAP -o OUT: merges existing Gaussians, so that fewer are left.
 #include "gaussmap/editing/simplify.h"
 
 #include <memory>
@@ -22,10 +22,10 @@ struct SimplifyCommand : MapTaskOptions {
 const Help kSimplifyHelp = {
     "Merge Gaussians of a map until it is small enough",
     "gaussmap simplify street.gmap -o small.gmap --max-gaussians 1=20000",
-    R"(Needs only the Gaussians of the map, so it also works on final and compressed maps. (refine computes the
-coarse scales again from the finest one.) Every cell keeps at least one Gaussian.)"};
+    R"(Needs only the Gaussians of the map, so it also works on final and compressed maps. (gaussmap refine rebuilds the
+coarse scales from the finest scale.) Every cell keeps at least one Gaussian.)"};
 
-/// Completes `step` by the limit and adds it to the history.
+/// Simplifies the map within the limit. Adds `step`, completed with the limit, to the history.
 GaussianMap<3> simplified(const GaussianMap<3>& map, const SimplifyCommand& command, MapMetadata& metadata, Json step) {
   const BudgetInput& limit = command.limit;
   const SimplifyOptions options{mergeCost(limit), command.threads};
@@ -34,8 +34,9 @@ GaussianMap<3> simplified(const GaussianMap<3>& map, const SimplifyCommand& comm
   measureFile(budget, metadata, options.threads);
   RefineResult<3> result = simplify<3>(map, budget, options);
   for (const NotReached& scale : result.not_reached)
-    warn("scale " + std::to_string(scale.scale) + " is farther away than --max-error as it came: 95 % are within " +
-         Json(scale.q95).dump() + " m; nothing of it was merged");
+    warn("scale " + std::to_string(scale.scale) +
+         " exceeds --max-error before merging: 95 % of its samples lie within " + Json(scale.q95).dump() +
+         " m; it stays unchanged");
   return std::move(result.map);
 }
 
@@ -46,7 +47,7 @@ void run(const SimplifyCommand& command) {
     throw UsageError("simplify needs one of --budget, --max-gaussians, --max-bytes and --max-error");
   checkBudget(limit);
   const GaussianMap<3> old = task.load();
-  task.metadata.erase("error_curves");  // of the scales as they were
+  task.metadata.erase("error_curves");  // they describe the old map
   const GaussianMap<3> map = simplified(old, command, task.metadata, historyStep("simplify"));
   task.save(map);
   task.report(map, old, {{"bytes_before", task.bytesBefore()}});

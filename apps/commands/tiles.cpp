@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap tiles MAP -o DIR: PCD tiles with an index; gaussmap tiles DIR -o MAP: the way back.
+// gaussmap tiles MAP -o DIR: writes PCD tiles with an index. gaussmap tiles DIR -o MAP: makes a map of such tiles.
 #include <cstdio>
 #include <memory>
 
@@ -19,13 +19,15 @@ struct TilesCommand : MapTaskOptions {
 };
 
 const Help kTilesHelp = {
-    "Write a map as PCD tiles with an index, as Autoware loads them, or read such tiles",
+    "Convert a map to PCD tiles with an index for Autoware, or such tiles to a map",
     "gaussmap tiles street.gmap -o tiles && gaussmap tiles tiles -o back.gmap",
     R"(Writes tile_X_Y.pcd for every square of --size metres, and pointcloud_map_metadata.yaml with the lower corner of
-each tile: the layout of Autoware's dynamic map loading. x y z are the means of the finest scale, the other
+each tile: the layout of Autoware's dynamic map loading. x y z are the means of the finest scale, and the other
 fields are those of gaussmap export.
-If the input is a directory of tiles, a map is made of it. From tiles of the finest scale alone, the map has one
-Gaussian per coarse cell (gaussmap refine adds more). Tiles hold no moments: the map accepts no more scans.)"};
+
+If the input is a directory of tiles, the command writes a map. If the tiles contain only the finest scale, the map
+has one Gaussian per coarse cell (gaussmap refine adds more). Tiles contain no moments, so the map accepts no more
+scans.)"};
 
 void toTiles(const TilesCommand& command) {
   const GaussianMap<3> map = loadAny(command.map);
@@ -61,10 +63,14 @@ void addTiles(CLI::App& app) {
   command.text("map", options->map, "map (.gmap, or PCD of Gaussians), or a directory of tiles").required();
   command.output(options->output, "directory, or map file (.gmap), to write");
   command.number("--size", options->size, 1, 1000000, "side of a tile [m]");
-  const Option scale = command.scale(options->scale, "the scale that is written, 0 = finest");
-  command.flag("--all-scales", options->all_scales, "write all scales, so that the way back rebuilds nothing")
+  const Option scale = command.scale(options->scale, "scale to write, 0 = finest");
+  command
+      .flag("--all-scales", options->all_scales,
+            "write all scales; a map made of the tiles then has the same coarse scales")
       .excludes(scale);
   command.json(options->json);
+  command.files({"map"}, {".gmap", ".pcd"});
+  command.files({"--output"}, {".gmap"});
   command.onRun([options] { std::filesystem::is_directory(options->map) ? fromTiles(*options) : toTiles(*options); });
 }
 

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap transform MAP -o OUT --transform "x y z qx qy qz qw": a map in another frame.
+// gaussmap transform MAP -o OUT --transform "x y z qx qy qz qw": moves a map into another frame.
 #include <memory>
 
 #include "commands/commands.h"
 #include "commands/map_task.h"
 #include "commands/motion.h"
 #include "common/command.h"
+#include "gaussmap/core/pose.h"
+#include "gaussmap/editing/transform_map.h"
 
 namespace gaussmap::app {
 namespace {
@@ -18,23 +20,24 @@ struct TransformCommand : MapTaskOptions {
 const Help kTransformHelp = {
     "Move a map into another frame",
     R"(gaussmap transform room.gmap -o house.gmap --transform "4 0 2.7 0 0 0.7071 0.7071")",
-    R"(Every Gaussian is moved and put into the cell that contains its new mean. The result holds Gaussians without
-moments, so it accepts no more scans. Moving it back (--inverse) restores the means and weights of the finest
-scale.)"};
+    R"(Every Gaussian is moved into the cell that contains its new mean. The result has no moments, so it accepts no
+more scans. Moving it back (--inverse) restores the means and weights of the finest scale.)"};
 
 void run(const TransformCommand& command) {
   std::vector<std::filesystem::path> inputs = {command.map};
   if (!command.motion.file.empty()) inputs.emplace_back(command.motion.file);
   MapTask task(command, inputs);
-  const std::vector<RigidMotion<3>> motions = motionsOf(command.motion, {command.map});
-  if (motions.empty()) throw UsageError("transform needs --transform or --transform-file");
-  const RigidMotion<3>& given = motions.front();
+  const Motions motions = motionsOf(command.motion, {command.map});
+  if (motions.poses.empty()) throw UsageError("transform needs --transform or --transform-file");
+  const Pose& given = motions.poses.front();
   TransformOptions options;
   options.threads = command.threads;
+  options.covariance = motions.covariance;
+  if (command.inverse && options.covariance) options.covariance = covarianceOfInverse(given, *options.covariance);
   const GaussianMap<3> map = transformMap<3>(task.load(), command.inverse ? given.inverse() : given, options);
 
   Json step = {{"inverse", command.inverse}};
-  const Eigen::Quaterniond q(Eigen::Matrix3d(given.rotation));
+  const Eigen::Quaterniond q(given.rotation.toRotationMatrix());
   const Eigen::Vector3d& t = given.translation;
   step["transform"] = {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
   if (!command.motion.covariance.empty()) step["pose_covariance"] = command.motion.covariance;
@@ -50,7 +53,7 @@ void addTransform(CLI::App& app) {
   Command command(app, "transform", kTransformHelp);
   addMapToMap(command, *options);
   addMotionOptions(command, options->motion);
-  command.flag("--inverse", options->inverse, "the inverse: from the target frame into the frame of the map");
+  command.flag("--inverse", options->inverse, "apply the inverse of the given pose");
   addRunOptions(command, *options);
   command.onRun([options] { run(*options); });
 }

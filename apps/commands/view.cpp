@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap view: hands over to gaussmap-view, a program of its own, so that no other command has to load VTK.
+// gaussmap view: starts the separate program gaussmap-view, so that no other command has to load VTK.
 #include <unistd.h>
 
 #include <filesystem>
 #include <stdexcept>
 
 #include "commands/commands.h"
+#include "commands/view_options.h"
 #include "common/command.h"
 
 namespace gaussmap::app {
@@ -16,8 +17,8 @@ void startViewer(const std::vector<std::string>& arguments) {
   const std::filesystem::path viewer = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "gaussmap-view";
   if (access(viewer.c_str(), X_OK) != 0)
     throw std::runtime_error(
-        "the viewer is not there: " + viewer.string() +
-        " is built with VTK and -DGAUSSMAP_BUILD_VIEWER=ON (gaussmap draw makes pictures without)");
+        viewer.string() +
+        ": the viewer does not exist; build it with -DGAUSSMAP_BUILD_VIEWER=ON or use gaussmap draw for pictures");
   std::vector<std::string> words = {viewer.string()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
@@ -25,13 +26,13 @@ void startViewer(const std::vector<std::string>& arguments) {
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   execv(viewer.c_str(), argv.data());
-  throw std::runtime_error(viewer.string() + " cannot be started");
+  throw std::runtime_error(viewer.string() + ": cannot be started");
 }
 
 }  // namespace
 
 void addView(CLI::App& app) {
-  Command(app, "view", {"Look at a map in a window, or save a picture (--png)", "", ""}).passOn(startViewer);
+  Command(app, "view", {kViewSummary, "", ""}).passOn(startViewer);
 }
 
 }  // namespace gaussmap::app

@@ -22,7 +22,7 @@ bool isNumber(const std::string& text, Number& value) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
-/// A number from `low` to `high`; unlike CLI::Range it refuses NaN.
+/// Accepts a number from `low` to `high`. Unlike CLI::Range, it refuses NaN.
 CLI::Validator numberBetween(double low, double high) {
   std::ostringstream range;
   range << low << " to " << high;
@@ -30,12 +30,12 @@ CLI::Validator numberBetween(double low, double high) {
       [low, high, possible = range.str()](std::string& text) -> std::string {
         double value = 0.0;
         if (!isNumber(text, value)) return "'" + text + "' is not a number";
-        return value >= low && value <= high ? "" : text + " is not in the range of " + possible;
+        return value >= low && value <= high ? "" : text + " is not in the range " + possible;
       },
       range.str());
 }
 
-/// Processors that this process may use.
+/// Number of processors that this process may use.
 int processors() {
   cpu_set_t set;
   return sched_getaffinity(0, sizeof set, &set) == 0
@@ -43,7 +43,7 @@ int processors() {
              : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-/// TBB warns on stderr if it is asked for more threads than there are processors.
+/// Limits the threads to the number of processors, because TBB warns on stderr if there are more.
 std::string limitThreads(std::string& text) {
   int threads = 0;
   if (isNumber(text, threads) && threads <= 1024) text = std::to_string(std::min(threads, processors()));
@@ -151,16 +151,18 @@ Option Command::number(const std::string& name, T& value, double low, double hig
   return Option(withDefault<T>(option));
 }
 
-#define GAUSSMAP_NUMBER(T)                                                     \
-  template Option Command::number(const std::string&, T&, const std::string&); \
-  template Option Command::number(const std::string&, T&, double, double, const std::string&);
-GAUSSMAP_NUMBER(int)
-GAUSSMAP_NUMBER(std::size_t)
-GAUSSMAP_NUMBER(double)
-GAUSSMAP_NUMBER(std::optional<int>)
-GAUSSMAP_NUMBER(std::optional<std::size_t>)
-GAUSSMAP_NUMBER(std::optional<double>)
-#undef GAUSSMAP_NUMBER
+template Option Command::number(const std::string&, int&, const std::string&);
+template Option Command::number(const std::string&, std::size_t&, const std::string&);
+template Option Command::number(const std::string&, double&, const std::string&);
+template Option Command::number(const std::string&, std::optional<int>&, const std::string&);
+template Option Command::number(const std::string&, std::optional<std::size_t>&, const std::string&);
+template Option Command::number(const std::string&, std::optional<double>&, const std::string&);
+template Option Command::number(const std::string&, int&, double, double, const std::string&);
+template Option Command::number(const std::string&, std::size_t&, double, double, const std::string&);
+template Option Command::number(const std::string&, double&, double, double, const std::string&);
+template Option Command::number(const std::string&, std::optional<int>&, double, double, const std::string&);
+template Option Command::number(const std::string&, std::optional<std::size_t>&, double, double, const std::string&);
+template Option Command::number(const std::string&, std::optional<double>&, double, double, const std::string&);
 
 Option Command::numbers(const std::string& name, std::vector<double>& values, int least, int most, double low,
                         double high, const std::string& help) {
@@ -190,6 +192,7 @@ Option Command::choice(const std::string& name, const std::vector<std::string>& 
 
 void Command::map(std::string& path) {
   text("map", path, "map (.gmap, or PCD of Gaussians)").required();
+  files({"map"}, {".gmap", ".pcd"});
 }
 
 void Command::output(Output& output, const std::string& help) {
@@ -206,7 +209,7 @@ Option Command::seed(std::uint64_t& value, const std::string& help) {
 }
 
 Option Command::threads(int& value) {
-  return Option(app_->add_option("--threads", value, "threads, 0 = all; the result does not depend on it")
+  return Option(app_->add_option("--threads", value, "number of threads, 0 = all cores")
                     ->check(CLI::Range(0, 1024))
                     ->transform(CLI::Validator(limitThreads, ""))
                     ->capture_default_str());
@@ -224,6 +227,20 @@ void Command::exclusive(const std::vector<std::string>& names) {
 
 void Command::excludes(const std::string& name, const std::vector<std::string>& others) {
   for (const std::string& other : others) app_->get_option(name)->excludes(app_->get_option(other));
+}
+
+void Command::files(const std::vector<std::string>& names, const std::vector<std::string>& endings) {
+  // A check that accepts everything and whose name option_tree.cpp reads. As a type, errors would quote it.
+  const CLI::Validator note([](std::string&) { return std::string(); }, "", CLI::detail::join(endings, " "));
+  for (const std::string& name : names) app_->get_option(name)->type_name("FILE")->check(note);
+}
+
+void Command::folders(const std::vector<std::string>& names) {
+  for (const std::string& name : names) app_->get_option(name)->type_name("DIR");
+}
+
+void Command::hide() {
+  app_->group("");
 }
 
 bool Command::isGiven(const std::string& name) const {

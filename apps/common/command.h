@@ -14,10 +14,11 @@ class App;
 class Option;
 }  // namespace CLI
 
-// Options of commands. CLI11, which takes seconds to compile, is confined to the sources of this header and main.
+// Commands and their options. CLI11 takes seconds to compile, so only command.cpp, help_formatter.h and the main
+// programs include it.
 namespace gaussmap::app {
 
-/// What a command says about itself.
+/// The help texts of a command.
 struct Help {
   std::string summary;  ///< one line, also in the list of commands
   std::string example;  ///< one command line
@@ -29,26 +30,26 @@ class Option {
  public:
   explicit Option(CLI::Option* option) : option_(option) {}
   Option required() const;
-  Option rare() const;                          ///< only --help-all shows it
-  Option group(const std::string& name) const;  ///< the same, under a heading
+  Option rare() const;                          ///< shown only by --help-all
+  Option group(const std::string& name) const;  ///< like rare(), under this heading
   Option needs(const Option& other) const;
   Option excludes(const Option& other) const;
-  Option type(const std::string& name) const;  ///< what the help calls its value
+  Option type(const std::string& name) const;  ///< the placeholder of its value in the help
   Option hideDefault() const;
-  Option atLeast(int count) const;  ///< so many values
-  Option onePerUse() const;         ///< may be given several times, with one value each
+  Option atLeast(int count) const;  ///< takes `count` values or more
+  Option onePerUse() const;         ///< may be given several times, each time with one value
   Option valueMayBeMissing(const std::string& then) const;
 
  private:
   CLI::Option* option_;
 };
 
-/// A command of the program, to which options are added. Names without dashes are positional arguments. Variables must
-/// live as long as the program; their values are the defaults, which the help shows.
+/// A command of the program, to which options are added. Names without dashes are positional arguments. The variables
+/// must live as long as the program. Their values at the call are the defaults, which the help shows.
 class Command {
  public:
   Command(CLI::App& program, const std::string& name, const Help& help);
-  Command(CLI::App& program, const Help& help);  ///< the program itself, if it has no commands
+  Command(CLI::App& program, const Help& help);  ///< a program without commands
 
   Option flag(const std::string& name, bool& value, const std::string& help);
   Option text(const std::string& name, std::string& value, const std::string& help);
@@ -58,20 +59,20 @@ class Command {
   Option number(const std::string& name, T& value, const std::string& help);
   template <typename T>
   Option number(const std::string& name, T& value, double low, double high, const std::string& help);
-  /// `count` numbers, or `least` to `most`.
+  /// `least` to `most` numbers; below: exactly `count` numbers.
   Option numbers(const std::string& name, std::vector<double>& values, int least, int most, double low, double high,
                  const std::string& help);
   Option numbers(const std::string& name, std::vector<double>& values, int count, double low, double high,
                  const std::string& help) {
     return numbers(name, values, count, count, low, high, help);
   }
-  /// Numbers with commas between them.
+  /// Numbers separated by commas.
   Option list(const std::string& name, std::vector<double>& values, double low, double high, const std::string& help);
 
-  /// One of some words. T: std::string, or std::optional of it.
+  /// One of these words. T: std::string, or std::optional of it.
   template <typename T>
   Option choice(const std::string& name, T& value, const std::vector<std::string>& words, const std::string& help);
-  /// One of some values that have names.
+  /// One of these named values.
   template <typename T>
   Option choiceOf(const std::string& name, T& value, const std::map<std::string, T>& named, const std::string& help) {
     std::string now;
@@ -88,7 +89,7 @@ class Command {
     return words;
   }
 
-  // Options that many commands have.
+  // Options that several commands share.
   void map(std::string& path);                           ///< MAP
   void output(Output& output, const std::string& help);  ///< -o (required) and --force
   Option force(bool& value, const std::string& help = "replace an existing output");
@@ -101,17 +102,24 @@ class Command {
     return number("--scale", value, 0, 63, help);
   }
 
-  /// Of these options, only one may be given.
+  /// At most one of these options may be given.
   void exclusive(const std::vector<std::string>& names);
-  /// The option may be given with none of the others.
+  /// The option cannot be combined with any of the others.
   void excludes(const std::string& name, const std::vector<std::string>& others);
+  /// The values of these options are names of files or directories. `endings`, such as ".gmap", are those that the
+  /// completion of the shell offers; empty: all files.
+  void files(const std::vector<std::string>& names, const std::vector<std::string>& endings = {});
+  /// The values of these options are names of directories.
+  void folders(const std::vector<std::string>& names);
   bool isGiven(const std::string& name) const;
-  /// The name of an option of this group that was given; empty if there is none.
+  /// The name of an option of this group that was given; empty if none was given.
   std::string givenOf(const std::string& group) const;
 
-  /// What the command does, after its options have been read.
+  /// Leaves the command out of the list of commands.
+  void hide();
+  /// Sets the function that runs the command after its options have been read.
   void onRun(const std::function<void()>& run);
-  /// Leaves all words after the name of the command, also --help, to `run`.
+  /// Passes all words after the name of the command, including --help, to `run` unparsed.
   void passOn(const std::function<void(const std::vector<std::string>&)>& run);
 
  private:

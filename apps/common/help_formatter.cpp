@@ -6,11 +6,10 @@
 namespace gaussmap::app {
 namespace {
 
-constexpr std::size_t kColumn = 32;  // where descriptions begin
+constexpr std::size_t kColumn = 32;  // first column of the descriptions
 constexpr std::size_t kLineWidth = 110;
-constexpr const char* kCommonGroup = "Options";  // the default group of CLI11
 
-/// Breaks lines at blanks so that none is longer than `width`, unless one word is.
+/// Breaks the text at white space into lines of at most `width` characters. A longer word gets its own line.
 std::string wrapped(const std::string& text, std::size_t width) {
   std::istringstream words(text);
   std::string lines, word;
@@ -26,23 +25,20 @@ std::string wrapped(const std::string& text, std::size_t width) {
   return lines;
 }
 
-/// "FLOAT", or the possible values if there is a list of them: "{sensor,map}". CLI11 adds what its validators say.
+/// Returns "FLOAT", or the list of possible values: "{sensor,map}".
 std::string typeOf(const CLI::Option& option) {
-  const std::string type = option.get_type_name();
-  const std::size_t open = type.find('{'), close = type.find('}');
-  if (open == std::string::npos || close == std::string::npos) return type.substr(0, type.find(':'));
-  std::string values = type.substr(open, close - open + 1);
-  for (std::size_t arrow = values.find("->"); arrow != std::string::npos; arrow = values.find("->"))
-    values.erase(arrow, values.find_first_of(",}", arrow) - arrow);
-  return values;
+  const std::vector<std::string> choices = choicesOf(option);
+  return choices.empty() ? valueNameOf(option) : "{" + CLI::detail::join(choices, ",") + "}";
 }
 
 class HelpFormatter : public CLI::Formatter {
  public:
   explicit HelpFormatter(Help help) : help_(std::move(help)) { column_width(kColumn); }
 
+  const Help& help() const { return help_; }
+
   std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
-    const bool is_part = mode == CLI::AppFormatMode::Sub;  // of the help of all commands
+    const bool is_part = mode == CLI::AppFormatMode::Sub;  // one command within `gaussmap --help-all`
     if (is_part) name = "gaussmap " + app->get_name();
     std::string text = make_description(app) + make_usage(app, name) + make_positionals(app) + optionGroups(app, mode);
     if (mode != CLI::AppFormatMode::Normal && !help_.details.empty()) text += "\n" + help_.details + "\n";
@@ -64,7 +60,7 @@ class HelpFormatter : public CLI::Formatter {
 
   std::string make_option_name(const CLI::Option* option, bool is_positional) const override {
     const std::string name = CLI::Formatter::make_option_name(option, is_positional);
-    return name.substr(0, name.find('{'));  // flags that switch off end in "{false}"
+    return name.substr(0, name.find('{'));  // the names of flags that set false end in "{false}"
   }
 
   std::string make_option_opts(const CLI::Option* option) const override {
@@ -90,6 +86,25 @@ class HelpFormatter : public CLI::Formatter {
 
 std::shared_ptr<CLI::Formatter> makeHelpFormatter(const Help& help) {
   return std::make_shared<HelpFormatter>(help);
+}
+
+Help helpOf(const CLI::App& app) {
+  const auto* const formatter = dynamic_cast<const HelpFormatter*>(app.get_formatter().get());
+  return formatter != nullptr ? formatter->help() : Help{app.get_description(), "", ""};
+}
+
+std::string valueNameOf(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  return type.substr(0, type.find(':'));
+}
+
+std::vector<std::string> choicesOf(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  const std::size_t open = type.find('{'), close = type.find('}', open);
+  if (open == std::string::npos || close == std::string::npos) return {};
+  std::vector<std::string> choices = CLI::detail::split(type.substr(open + 1, close - open - 1), ',');
+  for (std::string& choice : choices) choice = choice.substr(0, choice.find("->"));  // of named values
+  return choices;
 }
 
 }  // namespace gaussmap::app

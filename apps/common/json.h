@@ -9,18 +9,18 @@ namespace gaussmap::app {
 
 using Json = nlohmann::ordered_json;
 
-/// To stdout. File names need not be UTF-8, but JSON must be: their other bytes are replaced.
+/// Prints JSON on stdout. JSON must be UTF-8, so other bytes (file names can contain them) are replaced.
 void printJson(const Json& json);
 
-/// An entry of the metadata of a map; null if it does not exist or is not JSON.
+/// Returns an entry of the metadata of a map; null if it does not exist or is not JSON.
 Json jsonEntry(const MapMetadata& metadata, const std::string& name);
 
-/// A step of the history: {"command", "version"}, then `more`.
+/// Returns a step of the history: {"command", "version"} and the members of `more`.
 Json historyStep(const char* command, const Json& more = Json::object());
 /// Adds a step to the history in the metadata of a map file.
 void addHistory(MapMetadata& metadata, const Json& step);
 
-/// Cells and Gaussians of every scale.
+/// Returns side, cells, Gaussians and weight of every scale.
 Json scalesOf(const GaussianMap<3>& map);
 
 }  // namespace gaussmap::app

@@ -5,7 +5,7 @@
 
 namespace gaussmap::app {
 
-/// A line on stderr that is written over; silent unless stderr is a terminal.
+/// Shows the progress in one line on stderr, which each call overwrites. Prints nothing unless stderr is a terminal.
 class ProgressBar {
  public:
   ProgressBar();

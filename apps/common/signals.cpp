@@ -10,7 +10,7 @@
 
 #include "io/files/open_files.h"
 
-// Everything that runs in a handler keeps to what POSIX calls async-signal-safe.
+// Handlers call only functions that POSIX lists as async-signal-safe.
 namespace gaussmap::app {
 using namespace detail;
 namespace {
@@ -27,11 +27,11 @@ void removeParts() {
 
 void endAsWithoutHandler(int signal) {
   removeParts();
-  ::raise(signal);  // its handler is the default again (SA_RESETHAND), and comes when this one returns
+  ::raise(signal);  // SA_RESETHAND has restored the default handler, which runs when this one returns
 }
 
 void print(const char* text) {
-  if (::write(STDERR_FILENO, text, std::strlen(text)) < 0) return;  // then nobody can be told
+  if (::write(STDERR_FILENO, text, std::strlen(text)) < 0) return;  // stderr is closed, so there is nothing left to do
 }
 
 void endIfAFileWasCutOff(int, siginfo_t* info, void*) {
@@ -44,7 +44,7 @@ void endIfAFileWasCutOff(int, siginfo_t* info, void*) {
       print(text);
     ::_exit(1);
   });
-  ::sigaction(SIGBUS, &bus_error_before, nullptr);  // another fault, which comes again at once
+  ::sigaction(SIGBUS, &bus_error_before, nullptr);  // another fault: repeats for the previous handler
 }
 
 [[noreturn]] void endAfterException() {

@@ -3,16 +3,16 @@
 
 namespace gaussmap::app {
 
-/// For programs, once, at the start of main(): what the system does to a process leaves no half-written file behind and
-/// is told in one line. The library never does this by itself. Afterwards
-/// - SIGHUP, SIGINT, SIGQUIT, SIGPIPE, SIGTERM and SIGXCPU remove the part files of every open AtomicFile, then end the
-///   process as they would have; one that is ignored at the call stays ignored;
-/// - a file that is cut off by somebody else while it is read (SIGBUS in mapped memory) removes them too, prints
-///   `<program>: <file>: was cut off ...` on stderr and ends the process with exit code 1;
-/// - an exception that nobody can catch (one of a thread that starts another when there is no memory left) does the
-///   same with its message;
-/// - a write beyond the limit on the size of files (SIGXFSZ) fails like one on a full disk: FileError.
-/// `program` must live as long as the process.
+/// Installs signal handlers, so that a process that ends early leaves no half-written file and prints at most one line.
+/// Programs call it once, at the start of main(). The library never calls it. `program` must live as long as the
+/// process. Afterwards:
+/// - SIGHUP, SIGINT, SIGQUIT, SIGPIPE, SIGTERM and SIGXCPU first remove the part files of every open AtomicFile, then
+///   end the process as usual. A signal that is ignored at the call stays ignored.
+/// - If another process truncates a file while it is being read (SIGBUS in mapped memory), the part files are removed,
+///   `PROGRAM: FILE: was cut off ...` is printed on stderr, and the exit code is 1.
+/// - An exception that no code can catch does the same with its message. An example is the exception of a thread that
+///   cannot start another thread because no memory is left.
+/// - A write beyond the limit on the size of files (SIGXFSZ) fails with FileError, like a write to a full disk.
 void handleSignals(const char* program);
 
 }  // namespace gaussmap::app

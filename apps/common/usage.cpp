@@ -22,10 +22,10 @@ void checkOutput(const Output& output, const std::vector<std::filesystem::path>&
   const std::filesystem::path path = output.path, folder = path.has_parent_path() ? path.parent_path() : ".";
   std::error_code error;
   for (const std::filesystem::path& input : inputs)
-    for (const char* const written : {"", ".part"})  // the second one exists while the output is written
+    for (const char* const written : {"", ".part"})  // AtomicFile writes to the second name first
       if (std::filesystem::equivalent(output.path + written, input, error))
         throw UsageError(output.path + ": writing it would destroy the input " + input.string() +
-                         ", take another name");
+                         "; choose another name");
   if (std::filesystem::is_directory(path, error) || !path.has_filename())
     throw UsageError("'" + output.path + "' is a directory: give the name of a file");
   if (!std::filesystem::is_directory(folder, error))
@@ -33,14 +33,14 @@ void checkOutput(const Output& output, const std::vector<std::filesystem::path>&
   if (access(folder.c_str(), W_OK) != 0)
     throw UsageError(output.path + ": the directory " + folder.string() + " cannot be written to");
   if (std::filesystem::exists(path, error) && !output.force)
-    throw UsageError(output.path + " exists already: take another name, or --force to replace it");
+    throw UsageError(output.path + " exists already; choose another name or use --force to replace it");
 }
 
 void checkMapOutput(const Output& output, const std::vector<std::filesystem::path>& inputs) {
   checkOutput(output, inputs);
   if (std::filesystem::path(output.path).extension() == ".pcd")
     throw UsageError(output.path +
-                     ": a map file is not a PCD file, name it .gmap (gaussmap export makes a PCD file of it)");
+                     ": the name of a map file must not end in .pcd; use .gmap (gaussmap export writes PCD files)");
 }
 
 void checkOutputs(const std::vector<std::string>& outputs, bool force, const std::vector<std::filesystem::path>& inputs,
@@ -50,7 +50,7 @@ void checkOutputs(const std::vector<std::string>& outputs, bool force, const std
   for (const std::string& output : outputs) {
     if (output.empty()) continue;
     if (!all.insert(std::filesystem::weakly_canonical(output)).second)
-      throw UsageError(output + " is another output of this command already: take another name");
+      throw UsageError(output + " is already another output of this command; choose another name");
     checkOutput({output, force}, inputs);
   }
 }
@@ -58,7 +58,7 @@ void checkOutputs(const std::vector<std::string>& outputs, bool force, const std
 void makeFolder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) throw UsageError(folder.string() + ": the directory cannot be made: " + error.message());
+  if (error) throw UsageError(folder.string() + ": cannot create the directory: " + error.message());
 }
 
 }  // namespace gaussmap::app

@@ -8,12 +8,13 @@
 
 namespace gaussmap::app {
 
-/// Options that make no sense: exit code 2. Every other error is exit code 1.
+/// Wrong usage of the command line: exit code 2. Every other error has exit code 1.
 struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Throws UsageError if the map has no such scale. `option` such as "--scale"; `owner` is named in the message.
+/// Throws UsageError if the map does not have the scale. `option` (such as "--scale") and `owner` are named in the
+/// message.
 void checkScale(const std::string& option, int scale, int scales, const std::string& owner = "the map");
 
 /// Throws UsageError unless the path has this extension, such as ".pcd".
@@ -25,17 +26,17 @@ struct Output {
   bool force = false;
 };
 
-/// Throws UsageError, before any work is done, if the output is one of the inputs, is a directory, exists and --force
-/// is not given, or if its directory does not exist or is not writable.
+/// Throws UsageError if the output is one of the inputs, is a directory, or exists without --force, or if its directory
+/// does not exist or is not writable. Commands call it before they start to work.
 void checkOutput(const Output& output, const std::vector<std::filesystem::path>& inputs = {});
-/// The same for a map file, which must not be named like a PCD file.
+/// The same for a map file, whose name must not end in .pcd.
 void checkMapOutput(const Output& output, const std::vector<std::filesystem::path>& inputs);
-/// The same for several outputs of one command, which must all be different, also from those in `taken`. Empty names
+/// The same for several outputs of one command. They must differ from each other and from those in `taken`. Empty names
 /// are skipped.
 void checkOutputs(const std::vector<std::string>& outputs, bool force, const std::vector<std::filesystem::path>& inputs,
                   const std::vector<std::filesystem::path>& taken = {});
 
-/// Creates the directory unless it exists. Throws UsageError if that fails.
+/// Creates the directory if it does not exist. Throws UsageError if that fails.
 void makeFolder(const std::filesystem::path& folder);
 
 }  // namespace gaussmap::app

@@ -11,19 +11,19 @@
 namespace gaussmap::app {
 namespace {
 
-// All in pixels.
-constexpr double kRowWidth = 1200, kColumnHeight = 1500, kPanelHeight = 900;  // at most
+// Sizes in pixels.
+constexpr double kRowWidth = 1200, kColumnHeight = 1500, kPanelHeight = 900;  // maximum
 constexpr double kMargin = 12, kTitle = 16, kLegend = 44, kFont = 11;
-constexpr double kCharacter = 6.2;  // on average no text is wider
-constexpr double kColourBar = 220, kLeastWidth = 540;
-constexpr double kThin = 2.0;  // poles and fronts are filled, so that they are seen
+constexpr double kCharacter = 6.2;  // upper bound of the mean width of a character
+constexpr double kColourBar = 220, kMinWidth = 540;
+constexpr double kThin = 2.0;  // thinner ellipses (poles, fronts) are filled, to be visible
 
-/// Viridis (van der Walt & Smith 2015) in nine steps: equal differences look equal. Reversed: on white paper the
-/// ground is pale, what stands on it dark.
+/// Viridis (van der Walt and Smith 2015) in nine steps: equal differences look equal. The order is reversed, so the
+/// ground is pale on white paper, and objects above it are dark.
 constexpr int kScaleColours[][3] = {{253, 231, 37}, {173, 220, 48}, {94, 201, 98}, {40, 174, 128}, {33, 145, 140},
                                     {44, 114, 142}, {59, 82, 139},  {71, 45, 123}, {68, 1, 84}};
 
-/// "#rrggbb" of a place between 0 (low) and 1 (high).
+/// Returns the colour "#rrggbb" of a place from 0 (low) to 1 (high).
 std::string colourOf(double place) {
   const double step = std::clamp(place, 0.0, 1.0) * (std::size(kScaleColours) - 1);
   const auto below = std::min(static_cast<std::size_t>(step), std::size(kScaleColours) - 2);
@@ -52,9 +52,9 @@ HeightRange heightRange(const std::vector<Panel>& panels) {
   return range.high - range.low < 1e-3 ? HeightRange{range.low - 0.5, range.high + 0.5} : range;
 }
 
-/// Where everything is [pixels].
+/// Sizes and positions in the picture [pixels].
 struct Layout {
-  PlanView view;                 // of each panel
+  PlanView view;                 // of every panel
   double step_x, step_y;         // from one panel to the next
   double all_width, all_height;  // of the picture
 };
@@ -73,12 +73,12 @@ Layout layOut(const std::vector<Panel>& panels, const Box<2>& window) {
   const double height = layout.view.height(), column_width = std::max(layout.view.width(), title);
   layout.step_x = stacked ? 0.0 : column_width + kMargin;
   layout.step_y = stacked ? kTitle + height + kMargin : 0.0;
-  layout.all_width = std::max((count - 1) * layout.step_x + column_width, kLeastWidth) + 2 * kMargin;
+  layout.all_width = std::max((count - 1) * layout.step_x + column_width, kMinWidth) + 2 * kMargin;
   layout.all_height = (count - 1) * layout.step_y + kTitle + height + 2 * kMargin + kLegend;
   return layout;
 }
 
-/// The borders of the cells, unless they would be a grey area.
+/// Draws the borders of the cells, unless they are so close that they would look like a grey area.
 void drawGrid(Svg& svg, const PlanView& view, double side) {
   if (side * view.scale < 4.0) return;
   const Box<2>& window = view.window;
@@ -126,7 +126,7 @@ void drawColourBar(Svg& svg, const HeightRange& heights, double right, double y)
   double end_of_label = 0.0;
   for (double k = std::ceil(heights.low / step); k * step <= heights.high; ++k) {
     const double x = left + heights.placeOf(k * step) * kColourBar;
-    const std::string label = numberText(k * step + 0.0);  // no -0
+    const std::string label = numberText(k * step + 0.0);  // "+ 0.0" turns -0 into 0
     const double half = kCharacter * static_cast<double>(label.size()) / 2;
     svg << "<path d='M" << x << ' ' << y + 8 << "v3' stroke='black'/>\n";
     if (x - half < end_of_label) continue;
@@ -165,7 +165,7 @@ void drawMaps(std::vector<Panel> panels, const Box<2>& window, const std::filesy
     y += layout.step_y;
   }
   const double legend = layout.all_height - kLegend + 4;
-  layout.view.drawScaleBar(svg, kMargin, legend, std::max(layout.view.width(), kLeastWidth) / 5);
+  layout.view.drawScaleBar(svg, kMargin, legend, std::max(layout.view.width(), kMinWidth) / 5);
   drawColourBar(svg, heights, layout.all_width - kMargin, legend);
   svg.save(path);
 }

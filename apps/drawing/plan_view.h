@@ -6,24 +6,26 @@
 
 namespace gaussmap::app {
 
-/// A window of the map from above, and how it lies in a picture.
+/// A window of the map, seen from above, and its place in a picture.
 struct PlanView {
   Box<2> window;        ///< [m], map frame
   double scale = 1.0;   ///< pixels per metre
-  double margin = 0.0;  ///< left of and above the window [pixels]
+  double margin = 0.0;  ///< to the left of the window and above it [pixels]
 
-  // In pixels.
+  // Positions and sizes in the picture [pixels].
   double x(double metres) const { return margin + (metres - window.low.x()) * scale; }
   double y(double metres) const { return margin + (window.high.y() - metres) * scale; }
   double width() const { return (window.high.x() - window.low.x()) * scale; }   ///< without margins
   double height() const { return (window.high.y() - window.low.y()) * scale; }  ///< without margins
 
-  /// A bar with its length below; the longest round length of at most `pixels`. Returns its length [pixels].
+  /// Draws a bar with its length below it. The length is the longest round number of metres that takes at most
+  /// `pixels`. Returns the length of the bar [pixels].
   double drawScaleBar(Svg& svg, double left, double top, double pixels) const;
 };
 
-/// A box that contains nothing, to be grown by include().
+/// Returns an empty box, which include() extends.
 Box<2> emptyBox();
+/// Extends the box to contain the point.
 void include(Box<2>& box, const Vector<2>& point);
 
 }  // namespace gaussmap::app

@@ -14,9 +14,9 @@ namespace {
 constexpr double kWidth = 640, kHeight = 420, kLeft = 70, kRight = 190, kTop = 20, kBottom = 50;
 constexpr const char* kCurveColours[] = {"#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e"};
 
-/// A logarithmic axis from whole powers of ten.
+/// A logarithmic axis that begins and ends at powers of ten.
 struct Axis {
-  double low = std::numeric_limits<double>::infinity(), high = 0.0;  // decades after close()
+  double low = std::numeric_limits<double>::infinity(), high = 0.0;  // values; powers of ten after close()
   double from = 0.0, to = 1.0;                                       // pixels
   void add(double value) {
     low = std::min(low, value);
@@ -48,12 +48,12 @@ void drawAxes(Svg& svg, const Axis& x, const Axis& y) {
 }  // namespace
 
 void plotCurves(const std::vector<ErrorCurve>& curves, const std::filesystem::path& path) {
-  constexpr double kLeastError = 1e-9;  // [m]; zero has no logarithm
+  constexpr double kMinError = 1e-9;  // [m]; replaces zero, which has no logarithm
   Axis x, y;
   for (const ErrorCurve& curve : curves)
     for (const ErrorPoint& point : curve.points) {
       x.add(static_cast<double>(point.gaussians));
-      for (const double error : {point.q95, point.mean}) y.add(std::max(error, kLeastError));
+      for (const double error : {point.q95, point.mean}) y.add(std::max(error, kMinError));
     }
   x.close();
   y.close();
@@ -72,7 +72,7 @@ void plotCurves(const std::vector<ErrorCurve>& curves, const std::filesystem::pa
           << "' points='";
       for (const ErrorPoint& point : curve.points)
         svg << x.at(static_cast<double>(point.gaussians)) << ','
-            << y.at(std::max(is_mean ? point.mean : point.q95, kLeastError)) << ' ';
+            << y.at(std::max(is_mean ? point.mean : point.q95, kMinError)) << ' ';
       svg << "'/>\n";
       svg.text(x.to + 12, legend, "scale " + std::to_string(curve.scale) + (is_mean ? ", mean (dashed)" : ", 95 %"),
                std::string("fill='") + colour + "'");

@@ -10,16 +10,17 @@
 namespace gaussmap::app {
 namespace {
 
-// All in pixels.
-constexpr double kMostWidth = 1400, kMostHeight = 1400, kSegmentMargin = 16, kSegmentLegend = 44, kSegmentFont = 11;
-constexpr double kBand = 5;  // on the free side
+// Sizes in pixels.
+constexpr double kMaxWidth = 1400, kMaxHeight = 1400, kSegmentMargin = 16, kSegmentLegend = 44, kSegmentFont = 11;
+constexpr double kBand = 5;  // width of the band on the free side
 
-/// Okabe and Ito 2008: told apart by everybody, and on white paper.
+/// Okabe and Ito 2008: colours that colour-blind people can also distinguish, on a white background.
 constexpr const char* kChainColours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
 
-/// The window around everything, at least one metre wide and high: a map may be a single point.
+/// Returns the view of everything that is drawn. It is at least one metre wide and high, because a map can be a single
+/// point.
 PlanView viewOf(const SegmentMap& map, const SegmentPicture& picture) {
-  constexpr double kLeastSide = 1.0;  // [m]
+  constexpr double kMinSide = 1.0;  // [m]
   Box<2> window = emptyBox();
   for (const Segment& segment : map.segments) {
     include(window, segment.start);
@@ -28,12 +29,12 @@ PlanView viewOf(const SegmentMap& map, const SegmentPicture& picture) {
   for (const Vector<2>& point : picture.evidence) include(window, point);
   if (!window.low.allFinite()) window = {Vector<2>::Zero(), Vector<2>::Zero()};
   const Vector<2> middle = (window.low + window.high) / 2.0;
-  const Vector<2> half = ((window.high - window.low) / 2.0).cwiseMax(kLeastSide / 2.0);
-  const double scale = std::min(kMostWidth / (2.0 * half.x()), kMostHeight / (2.0 * half.y()));
+  const Vector<2> half = ((window.high - window.low) / 2.0).cwiseMax(kMinSide / 2.0);
+  const double scale = std::min(kMaxWidth / (2.0 * half.x()), kMaxHeight / (2.0 * half.y()));
   return {{middle - half, middle + half}, scale, kSegmentMargin};
 }
 
-/// "x y" in pixels.
+/// Prints "x y" of a point in pixels.
 struct At {
   const PlanView& view;
   const Vector<2>& point;

@@ -9,10 +9,10 @@
 
 namespace gaussmap::app {
 
-/// What a picture shows besides the segments.
+/// What a picture shows in addition to the segments.
 struct SegmentPicture {
   std::vector<Vector<2>> evidence;  ///< points [m], map frame
-  /// A circle in which the map has more detail [m].
+  /// A circle in which the map has more detail [m, map frame].
   struct Field {
     Vector<2> centre{0.0, 0.0};
     double radius = 0.0;
@@ -20,8 +20,8 @@ struct SegmentPicture {
   std::optional<Field> field;
 };
 
-/// Writes SVG: each chain in one colour, its segments with their end points, a pale band on the free side, a scale
-/// bar. Throws FileError if it cannot be written.
+/// Writes an SVG picture with a scale bar. Each chain has one colour; its segments are drawn with their end points and
+/// a pale band on the free side. Throws FileError if the file cannot be written.
 void drawSegments(const SegmentMap& map, const SegmentPicture& picture, const std::filesystem::path& path);
 
 }  // namespace gaussmap::app

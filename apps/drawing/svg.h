@@ -7,31 +7,32 @@
 
 namespace gaussmap::app {
 
-/// A picture as text, on a white ground; lengths in pixels, y down.
+/// An SVG picture on a white background. Lengths are in pixels, y points down.
 class Svg {
  public:
   Svg(double width, double height, double font_size = 12);
 
-  /// Appends SVG as it is.
+  /// Appends SVG code unchanged.
   template <typename T>
   Svg& operator<<(const T& piece) {
     svg_ << piece;
     return *this;
   }
-  /// A line of text at its baseline; `attributes` such as "text-anchor='end'". Bytes that SVG cannot hold are replaced.
+  /// Appends a line of text; (x, y) is on its baseline. `attributes` are SVG attributes such as "text-anchor='end'".
+  /// Bytes that SVG cannot contain are replaced.
   void text(double x, double y, const std::string& text, const std::string& attributes = "");
 
-  /// Throws FileError if it cannot be written.
+  /// Throws FileError if the file cannot be written.
   void save(const std::filesystem::path& path) const;
 
  private:
   std::ostringstream svg_;
 };
 
-/// "0.25": at most ten digits, without trailing zeros.
+/// Formats a number with at most ten digits and without trailing zeros: "0.25".
 std::string numberText(double value);
 
-/// The largest of 1, 2, 5, 10, 20, ... (and their tenths, hundredths, ...) that is at most `length` > 0.
+/// Returns the largest number of the form 1, 2 or 5 times a power of ten that is at most `length`; `length` > 0.
 double roundLength(double length);
 
 }  // namespace gaussmap::app

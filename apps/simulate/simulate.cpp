@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap simulate [SCENE] -o DIR: scans of a built-in world whose surfaces are known exactly.
+// gaussmap simulate [SCENE] -o DIR: simulates scans of a built-in world and writes its exact surfaces.
 #include "simulation/simulation.h"
 
 #include <iostream>
@@ -19,18 +19,21 @@ using namespace detail;
 namespace {
 
 const Help kSimulateHelp = {
-    "Simulate scans of a built-in scene, with the exact truth",
+    "Simulate scans of a built-in scene, with exact ground truth",
     "gaussmap simulate street -o street --moving && gaussmap pcd2map street/scans -o street.gmap",
     R"(Scenes:
-  corner  floor, two walls, a pole
-  street  150 m with plane fronts, trees, poles, parked cars, a fence
-  avenue  the same with fronts in relief and many trees
-  hall    a hall, a corridor, furnished rooms
+  corner  a floor, two walls and a pole
+  street  150 m of a street with plane fronts, trees, poles, parked cars and a fence
+  avenue  the same street with fronts in relief and many trees
+  hall    a hall, a corridor and furnished rooms
   plan    a floor plan with walls of 12 cm, for a planar laser
 
-Files: DIR/scans/scan00.pcd ... (sensor frame, pose in VIEWPOINT; with --moving a field label: 1 = on a moving object)
-and, in the map frame, DIR/truth.ply (all static surfaces; the rays are cast against these triangles), DIR/truth.pcd
-(where the rays met them, without noise) and DIR/trajectory.tum. plan also writes DIR/walls.pcd, a map of segments.)"};
+Files in the output directory:
+  scans/scan00.pcd ...  points in the sensor frame, pose in VIEWPOINT; --moving adds a field label (1 = moving object)
+  truth.ply             static surfaces, in the map frame: the triangles that the rays are cast against
+  truth.pcd             points where the rays hit static surfaces, without noise, in the map frame
+  trajectory.tum        poses of the scans
+  walls.pcd             only for plan: the walls, as a map of segments)"};
 
 const std::map<std::string, WorldName> kWorlds = {{"corner", WorldName::Corner},
                                                   {"street", WorldName::Street},
@@ -50,20 +53,20 @@ struct SimulateCommand {
 };
 
 void adapt(LidarOptions& lidar, const SimulateCommand& options) {
-  if (options.field) throw UsageError("--field-of-view: only the laser of 'plan' has one");
+  if (options.field) throw UsageError("--field-of-view: only the planar laser of 'plan' has this option");
   lidar.rings = options.rings.value_or(lidar.rings);
   lidar.columns = options.columns.value_or(lidar.columns);
 }
 
 void adapt(PlanarLaserOptions& laser, const SimulateCommand& options) {
-  if (options.rings) throw UsageError("--rings: the laser of 'plan' has one ring");
+  if (options.rings) throw UsageError("--rings: the planar laser of 'plan' has only one ring");
   laser.beams = options.columns.value_or(laser.beams);
   laser.field_deg = options.field.value_or(laser.field_deg);
 }
 
 Simulation simulationOf(const SimulateCommand& options) {
   if (options.world.moving && options.scene != "street" && options.scene != "avenue")
-    throw UsageError("--moving: only in the scenes 'street' and 'avenue'");
+    throw UsageError("--moving: only the scenes 'street' and 'avenue' have moving objects");
   Simulation simulation = makeSimulation(kWorlds.at(options.scene), options.world);
   std::visit(
       [&](auto& sensor) {
@@ -105,13 +108,14 @@ void run(const SimulateCommand& options) {
 void addSimulate(CLI::App& app) {
   auto options = std::make_shared<SimulateCommand>();
   Command command(app, "simulate", kSimulateHelp);
-  command.choice("scene", options->scene, Command::wordsOf(kWorlds), "what to scan");
+  command.choice("scene", options->scene, Command::wordsOf(kWorlds), "scene to scan");
   command.output(options->output, "directory to write to");
   command
       .number("--scans", options->world.scans, 1, 100000,
-              "number of scans, spread over the path of the scene; default: 5 to 240, by scene")
+              "number of scans along the path; default: 5 to 240, depending on the scene")
       .hideDefault();
-  command.flag("--moving", options->world.moving, "three cars drive and two pedestrians walk through the street");
+  command.flag("--moving", options->world.moving,
+               "add three driving cars and two walking pedestrians (street, avenue)");
   command.number("--noise", options->noise, 0.0, 1e3, "standard deviation of the ranges [m]");
   command.number("--rings", options->rings, 1, 1000, "rings of the lidar; default: 32, street 64");
   command.number("--columns", options->columns, 1, 100000,
@@ -119,9 +123,10 @@ void addSimulate(CLI::App& app) {
   command.number("--field-of-view", options->field, 1.0, 360.0,
                  "field of view of the planar laser [degree]; default: 180");
   command.number("--max-range", options->max_range, 1e-3, 1e9,
-                 "range of the sensor [m]; default: 60, street 80, plan 30");
+                 "maximum range of the sensor [m]; default: 60, street 80, plan 30");
   command.seed(options->seed, "seed of the noise");
   command.threads(options->threads);
+  command.folders({"--output"});
   command.onRun([options] { run(*options); });
 }
 

@@ -13,7 +13,7 @@ using namespace detail;
 
 namespace {
 
-/// Names that sort as numbers do.
+/// Returns names whose alphabetical order is the order of the numbers.
 std::vector<std::filesystem::path> scanPaths(const std::filesystem::path& folder, std::size_t count) {
   const std::size_t digits = std::max<std::size_t>(2, std::to_string(count - 1).size());
   std::vector<std::filesystem::path> paths;
@@ -27,7 +27,7 @@ std::vector<std::filesystem::path> scanPaths(const std::filesystem::path& folder
 void refuseOtherScans(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& own) {
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     if (isScanName(entry.path().filename()) && std::find(own.begin(), own.end(), entry.path()) == own.end())
-      throw UsageError(entry.path().string() + " would lie among the new scans: remove it, or take another directory");
+      throw UsageError(entry.path().string() + " would lie among the new scans; remove it or choose another directory");
 }
 
 }  // namespace

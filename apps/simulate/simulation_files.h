@@ -10,21 +10,23 @@
 
 namespace gaussmap::app {
 
-/// The files of a simulation in a folder.
+/// The paths of the files of a simulation.
 struct SimulationFiles {
-  std::vector<std::filesystem::path> scans;  // scan00.pcd ..., with as many digits as the last one needs
+  std::vector<std::filesystem::path> scans;  // scan00.pcd ...: all numbers have as many digits as the last one
   std::filesystem::path truth_points, truth_mesh, trajectory;
-  std::filesystem::path walls;  // empty if there are none
+  std::filesystem::path walls;  // empty for scenes without a floor plan
 };
 
-/// Makes the folders. Throws UsageError if a file exists and may not be replaced, or if the folder of the scans holds
-/// other scans, which would be taken for scans of this simulation.
+/// Creates the folders and returns the paths of the files. Throws UsageError if a file exists and may not be replaced,
+/// or if the folder of the scans contains other scans, which would later be read together with the new ones.
 SimulationFiles prepareFiles(const Output& folder, std::size_t scans, bool with_walls);
 
-/// Points in the sensor frame, the pose in VIEWPOINT; `with_labels`: and a field "label", 1 on moving objects.
+/// Writes a scan as PCD: points in the sensor frame, the pose as VIEWPOINT, and, with `with_labels`, a field "label"
+/// that is 1 on moving objects.
 void writeScan(const std::filesystem::path& path, const SimulatedScan& scan, bool with_labels);
 
-/// The walls of the scene "plan", linked where one begins at the end of the one before.
+/// Returns the walls of the scene "plan" as segments. Two consecutive walls are linked if the second one begins at the
+/// end of the first one.
 SegmentMap planMap();
 
 }  // namespace gaussmap::app

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap-view MAP [CLOUD...]: what `gaussmap view` starts.
+// gaussmap-view MAP [CLOUD...]: the program that `gaussmap view` starts.
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <iostream>
@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "commands/scan_input.h"
-#include "common/command.h"
+#include "commands/view_options.h"
 #include "common/report.h"
 #include "common/signals.h"
 #include "gaussmap/io/export/segment_files.h"
@@ -20,25 +20,11 @@ using namespace detail;
 
 namespace {
 
-struct ViewCommand {
-  std::string map;
-  ScanInput cloud;
-  std::optional<int> scale;
-  bool leaves = false;
-  std::string colour;  // empty: the default
-  std::string up = "z", from = "iso", size = "1200x800";
-  std::vector<double> at;
-  Output png;
-  ViewOptions view;
-};
-
 const std::map<std::string, ColourBy> kColours = {{"scale", ColourBy::Scale},   {"height", ColourBy::Height},
                                                   {"normal", ColourBy::Normal}, {"weight", ColourBy::Weight},
                                                   {"error", ColourBy::Error},   {"occupancy", ColourBy::Occupancy}};
-const std::map<std::string, Vector<3>> kUp = {{"x", {1, 0, 0}},   {"y", {0, 1, 0}},   {"z", {0, 0, 1}},
-                                              {"-x", {-1, 0, 0}}, {"-y", {0, -1, 0}}, {"-z", {0, 0, -1}}};
 
-/// "1,2.5,-3" or "800x600"; nothing if it is anything else.
+/// Reads `count` numbers such as "1,2.5,-3" or "800x600". Returns an empty vector for any other text.
 template <typename Number>
 std::vector<Number> numbersIn(const std::string& text, char between, std::size_t count) {
   std::vector<Number> numbers;
@@ -62,15 +48,15 @@ ViewPoint viewPoint(const ViewCommand& command, const Vector<3>& up) {
   ViewPoint view;
   if (!numbers.empty()) view.direction = {numbers[0], numbers[1], numbers[2]};
   if (numbers.empty() || !view.direction.allFinite() || !(view.direction.norm() > 1e-6))
-    throw UsageError("--view " + command.from + ": say top, iso, or from where: three numbers such as -1,-2,1.5");
+    throw UsageError("--view " + command.from + ": expected top, iso, or a direction x,y,z such as -1,-2,1.5");
   return view;
 }
 
 std::pair<int, int> sizeOf(const ViewCommand& command) {
   const std::vector<int> numbers = numbersIn<int>(command.size, 'x', 2);
   for (const int number : numbers)
-    if (number < 16 || number > 8192) throw UsageError("--size " + command.size + ": from 16 to 8192 pixels a side");
-  if (numbers.empty()) throw UsageError("--size " + command.size + ": two numbers, such as 1200x800");
+    if (number < 16 || number > 8192) throw UsageError("--size " + command.size + ": sides must be 16 to 8192 pixels");
+  if (numbers.empty()) throw UsageError("--size " + command.size + ": expected two numbers, such as 1200x800");
   return {numbers[0], numbers[1]};
 }
 
@@ -79,23 +65,24 @@ void checkForSegments(const ViewCommand& command) {
        {std::pair("--scale", command.scale.has_value()), std::pair("--leaves", command.leaves),
         std::pair("--color", !command.colour.empty()), std::pair("--cells", command.view.cells),
         std::pair("--hierarchy", command.view.hierarchy)})
-    if (given) throw UsageError(std::string(name) + ": " + command.map + " is a map of segments, which has none");
+    if (given) throw UsageError(std::string(name) + ": not for maps of segments, such as " + command.map);
 }
 
-/// Fills in what depends on the map.
+/// Sets the scale that is shown, which depends on the map.
 void setScale(const ViewCommand& command, const GaussianMap<3>& map, ViewOptions& view) {
-  if (command.leaves && command.scale) throw UsageError("--leaves and --scale: one of them");
+  if (command.leaves && command.scale) throw UsageError("--leaves and --scale: only one of them may be given");
   if (command.scale) checkScale("--scale", *command.scale, map.scales());
   if (command.leaves) return;
   view.scale = command.scale.value_or(scaleToShow(map));
   if (view.colour == ColourBy::Error && *view.scale == 0 && command.cloud.paths.empty() && !view.hierarchy)
-    throw UsageError("--color error: nothing is finer than scale 0, give a CLOUD to compare with or a coarser --scale");
+    throw UsageError(
+        "--color error: no scale is finer than scale 0; give a CLOUD to compare with or a coarser --scale");
 }
 
 void run(ViewCommand command) {
   const auto [width, height] = sizeOf(command);
   ViewOptions view = command.view;
-  view.up = kUp.at(command.up);
+  view.up = kUpAxes.at(command.up);
   const double zoom = view.view.zoom;
   view.view = viewPoint(command, view.up);
   view.view.zoom = zoom;
@@ -112,7 +99,7 @@ void run(ViewCommand command) {
     scene.map = loadSegmentsPcd(command.map);
   } else {
     GaussianMap<3> map = loadAny(command.map);
-    if (map.empty()) throw std::runtime_error(command.map + ": there is no Gaussian in it");
+    if (map.empty()) throw std::runtime_error(command.map + ": the map is empty, so there is nothing to show");
     setScale(command, map, view);
     scene.map = std::move(map);
   }
@@ -124,28 +111,6 @@ void run(ViewCommand command) {
             << humanBytes(std::filesystem::file_size(command.png.path)) << '\n';
 }
 
-void addOptions(Command& command, ViewCommand& options) {
-  command.text("map", options.map, "map (.gmap, or PCD of Gaussians or of segments)").required();
-  command.texts("cloud", options.cloud.paths, "PCD files or directories, shown over the map");
-  addScanOptions(command, options.cloud);
-  command.scale(options.scale, "which scale, 0 = finest; default: the finest of at most 200,000 Gaussians");
-  command.flag("--leaves", options.leaves, "all leaves of a compressed map");
-  command.choice("--color", options.colour, {"height", "scale", "normal", "weight", "occupancy", "error"},
-                 "height (default), scale, normal, weight, occupancy, or error: distance to the CLOUD, or without a "
-                 "CLOUD to the finer scales");
-  command.number("--sigma", options.view.sigma, 0.01, 100.0, "half axes of the ellipsoids, in standard deviations");
-  command.flag("--cells", options.view.cells, "draw the occupied cells as boxes");
-  command.flag("--hierarchy", options.view.hierarchy,
-               "draw all scales, one above the other, with links to the children");
-  command.choice("--up", options.up, Command::wordsOf(kUp), "the axis that points up");
-  command.text("--view", options.from, "top, iso, or x,y,z: the direction from the map to the eye");
-  command.number("--zoom", options.view.view.zoom, 0.01, 1000.0, "1 = all of the map");
-  command.numbers("--at", options.at, 3, -1e9, 1e9, "the point to look at [m]; default: the middle").type("X Y Z");
-  command.text("--png", options.png.path, "save a picture instead of opening a window; needs no display");
-  command.text("--size", options.size, "size of the picture or window [pixels]");
-  command.force(options.png.force, "replace an existing picture");
-}
-
 }  // namespace
 }  // namespace gaussmap::app
 
@@ -153,12 +118,9 @@ int main(int argc, char** argv) {
   using namespace gaussmap::app;
   handleSignals("gaussmap");
   CLI::App app("", "gaussmap view");
-  app.set_help_all_flag("--help-all", "show all options, and the keys");
-  Command command(app, {"Look at a map in a window, or save a picture (--png)",
-                        "gaussmap view street.gmap --scale 1 --color normal --png street.png --size 1600x900",
-                        "Keys:\n" + gaussmap::Viewer::helpText()});
+  app.set_help_all_flag("--help-all", kViewHelpAll);
   ViewCommand options;
-  addOptions(command, options);
+  addViewOptions(app, options);
   try {
     app.parse(argc, argv);
     run(options);

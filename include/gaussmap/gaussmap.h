@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// The everyday headers of gaussmap::core and gaussmap::io. The PCL plug-ins are in gaussmap/pcl/.
+// Includes the most used headers of gaussmap::core and gaussmap::io. The PCL plug-ins are in gaussmap/pcl/.
 
 #include "gaussmap/clustering/kl_kmeans.h"
 #include "gaussmap/core/error.h"

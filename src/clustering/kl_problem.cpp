@@ -17,7 +17,7 @@ namespace {
 constexpr Eigen::Index kBlock = 256;
 
 /// The nearest references that a block of data has met so far. Labels are doubles: the loops below are vectorised.
-struct Nearest {
+struct NearestReferences {
   double distance[kBlock], label[kBlock];
 
   void clear(Eigen::Index rows) {
@@ -30,7 +30,7 @@ struct Nearest {
 /// most cells are too small for a general product to pay.
 template <int D>
 void compare(const double* x, Eigen::Index stride, Eigen::Index rows, const typename KLProblem<D>::References& y,
-             Eigen::Index c, Nearest& nearest) {
+             Eigen::Index c, NearestReferences& nearest) {
   const Eigen::Matrix<double, KLProblem<D>::kFeatures, 1> weights = y.col(c);
   const auto label = static_cast<double>(c);
   for (Eigen::Index j = 0; j < rows; ++j) {
@@ -148,7 +148,7 @@ void KLProblem<D>::assignAll(KLAssignment<D>& assignment) const {
   const auto n = static_cast<Eigen::Index>(size());
   assignment.distances.resize(size());
   assignment.labels.resize(size());
-  Nearest nearest;
+  NearestReferences nearest;
   for (Eigen::Index first = 0; first < n; first += kBlock) {
     const Eigen::Index rows = std::min(kBlock, n - first);
     nearest.clear(rows);
@@ -163,7 +163,7 @@ void KLProblem<D>::assignAll(KLAssignment<D>& assignment) const {
 template <int D>
 void KLProblem<D>::assignAgain(KLAssignment<D>& assignment, const std::vector<char>& changed) const {
   const auto n = static_cast<Eigen::Index>(size()), k = assignment.references.cols();
-  Nearest nearest;
+  NearestReferences nearest;
   double x[kFeatures * kBlock];  // data whose reference has moved
   for (Eigen::Index first = 0; first < n; first += kBlock) {
     const Eigen::Index rows = std::min(kBlock, n - first);

@@ -22,8 +22,8 @@ namespace {
 
 constexpr double kLargest = 1e300;  // of a determinant, so that no cost is infinite or NaN
 constexpr double kSmallest = 1e-300;
-constexpr double kMostWeight = 1e100;
-constexpr std::size_t kMostData = 0x7FFFFFFF;
+constexpr double kMaxWeight = 1e100;
+constexpr std::size_t kMaxData = 0x7FFFFFFF;
 
 /// ln x within 2 ulp for x in [1e-300, 1e300], from + - * / only: libraries' own differ from machine to machine.
 GAUSSMAP_INLINE double naturalLogarithm(double x) {
@@ -128,8 +128,8 @@ void checkData(const std::vector<Gaussian<D>>& data, const std::vector<double>& 
   if (areas.size() != data.size())
     throw std::invalid_argument("agglomerate: " + std::to_string(areas.size()) + " areas for " +
                                 std::to_string(data.size()) + " data");
-  if (data.size() > kMostData) throw std::invalid_argument("agglomerate: 2^31 data or more");
-  const auto usable = [](double value) { return value > 0.0 && value < kMostWeight; };
+  if (data.size() > kMaxData) throw std::invalid_argument("agglomerate: 2^31 data or more");
+  const auto usable = [](double value) { return value > 0.0 && value < kMaxWeight; };
   for (std::size_t j = 0; j < data.size(); ++j) {
     if (!usable(data[j].weight)) refuse(j, "usable weight");
     if (!usable(areas[j])) refuse(j, "usable area");

@@ -7,7 +7,7 @@ namespace gaussmap::detail {
 namespace {
 
 // A swap must pay by more than the rounding of the distortion.
-constexpr double kLeastGain = 1e-9;
+constexpr double kMinGain = 1e-9;
 
 /// The datum of largest distortion: lines 8 to 13.
 struct Worst {
@@ -86,7 +86,7 @@ int swapLoop(const KLProblem<D>& problem, const KLKMeansOptions& options, Random
     references[leastNeeded(partition, worst, random)] = seedAt(problem, partition, worst, options.seed_rule);
     KLPartition<D> swapped = problem.run(std::move(references), options, partition.assignment);
     swapped.iterations += partition.iterations;
-    const bool accepted = swapped.distortion < partition.distortion * (1.0 - kLeastGain) &&
+    const bool accepted = swapped.distortion < partition.distortion * (1.0 - kMinGain) &&
                           swapped.references.size() >= partition.references.size();
     if (!accepted) {
       partition.iterations = swapped.iterations;

@@ -9,7 +9,7 @@ namespace {
 
 enum class PointKind { Accepted, NonFinite, AtSensor, BeyondRange };
 
-/// By the squared range from the sensor, which is infinite for some finite points.
+/// Classifies a point by its squared range from the sensor, which is infinite for some finite points.
 PointKind kindOf(double square_range, bool finite, double square_max) {
   if (!finite) return PointKind::NonFinite;
   if (square_range == 0.0) return PointKind::AtSensor;

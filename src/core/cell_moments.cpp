@@ -16,7 +16,7 @@ Vector<D> CellMoments<D>::mean(double side) const {
 
 template <int D>
 Matrix<D> CellMoments<D>::covariance(double side) const {
-  // In steps^2 a mean product is below 2^30: doubles leave 2^-23 steps^2 of rounding, 2^-55 of the side squared.
+  // A mean product is below 2^30 steps^2. The rounding of doubles is then 2^-23 steps^2, which is 2^-55 side^2.
   const double step = side / static_cast<double>(kStepsPerCell);
   const double n = static_cast<double>(count);
   Matrix<D> covariance;

@@ -8,8 +8,8 @@
 
 namespace gaussmap::detail {
 
-/// Throws std::invalid_argument unless the value of an option is usable: "cell = -1: must be positive". `rule` says
-/// what is required: "must be positive", "must be at least 1 (0 = all)".
+/// Checks the value of an option. Throws std::invalid_argument if it is not usable: "cell = -1: must be positive".
+/// `rule` is the requirement: "must be positive", "must be at least 1 (0 = all)".
 inline void require(bool usable, const std::string& option, double value, const std::string& rule) {
   if (!usable) throw std::invalid_argument(option + " = " + numberText(value) + ": " + rule);
 }

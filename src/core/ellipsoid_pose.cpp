@@ -5,7 +5,7 @@ namespace gaussmap::detail {
 
 Vector<3> EllipsoidPose::normal() const {
   Vector<3> axis = rotation * Vector<3>::UnitX();
-  constexpr double kNone = 1e-12;  // what rounding leaves of a zero
+  constexpr double kNone = 1e-12;  // components below this are rounding errors of 0
   for (const int i : {2, 1, 0})
     if (std::abs(axis(i)) > kNone) return axis(i) > 0.0 ? axis : Vector<3>(-axis);
   return axis;
@@ -14,7 +14,7 @@ Vector<3> EllipsoidPose::normal() const {
 EllipsoidPose ellipsoidPose(const Gaussian<3>& gaussian) {
   const PrincipalAxes<3> axes = principalAxes<3>(gaussian);
   Matrix<3> turn = axes.directions;
-  if (turn.determinant() < 0.0) turn.col(0) = -turn.col(0);  // eigenvectors may be a mirror image
+  if (turn.determinant() < 0.0) turn.col(0) = -turn.col(0);  // the eigenvectors can form a reflection
   Eigen::Quaternion<double, Eigen::DontAlign> rotation(turn);
   if (rotation.w() < 0.0) rotation.coeffs() = -rotation.coeffs();
   return {rotation.normalized(), axes.variances.cwiseMax(0.0).cwiseSqrt()};

@@ -7,16 +7,18 @@
 
 namespace gaussmap::detail {
 
-/// How a Gaussian's ellipsoid is turned and how long it is: Sigma = R diag(deviations)^2 R'.
+/// The orientation and the size of a Gaussian's ellipsoid: Sigma = R diag(deviations)^2 R'.
 struct EllipsoidPose {
-  Eigen::Quaternion<double, Eigen::DontAlign> rotation;  ///< R, unit, w >= 0: from the ellipsoid's axes to the map's
-  Vector<3> deviations;                                  ///< standard deviations along its axes [m], ascending
+  Eigen::Quaternion<double, Eigen::DontAlign> rotation;  ///< R, from the ellipsoid's axes to the map's; unit, w >= 0
+  Vector<3> deviations;                                  ///< standard deviations along the axes [m], ascending
 
-  /// The axis of least deviation, of the two signs the one that points up (else along +y, +x): a normal to draw.
+  /// Returns the axis with the smallest deviation, for example to draw a normal. Of its two directions, it is the one
+  /// that points up (horizontal axes: along +y, else +x).
   Vector<3> normal() const;
 };
 
-/// Variances that rounding made negative count as 0. Throws std::domain_error if the covariance is not finite.
+/// Returns the pose of a Gaussian's ellipsoid. Variances that are negative because of rounding count as 0. Throws
+/// std::domain_error if the covariance is not finite.
 EllipsoidPose ellipsoidPose(const Gaussian<3>& gaussian);
 
 }  // namespace gaussmap::detail

@@ -5,7 +5,7 @@
 
 namespace gaussmap::detail {
 
-/// Rounds towards minus infinity, for divisors > 0: the parent of cell -1 is cell -1, not cell 0.
+/// Divides and rounds towards minus infinity, for divisors > 0: the parent of cell -1 is cell -1, not cell 0.
 constexpr std::int64_t floorDivide(std::int64_t value, std::int64_t divisor) {
   return value / divisor - (value % divisor < 0 ? 1 : 0);
 }

@@ -40,7 +40,7 @@ double klDivergence(const Gaussian<D>& p, const Gaussian<D>& q) {
   const double mahalanobis = whiten<D>(q_factor, q.mean - p.mean).squaredNorm();
   const double log_det_ratio = logDeterminantOfFactor<D>(q_factor) - logDeterminantOfFactor<D>(p_factor);
   const double divergence = 0.5 * (trace + mahalanobis - D + log_det_ratio);  // eq. (8)
-  return divergence < 0.0 ? 0.0 : divergence;                                 // rounding, where the two are the same
+  return divergence < 0.0 ? 0.0 : divergence;                                 // rounding, if p and q are equal
 }
 
 template <int D>

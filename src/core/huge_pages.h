@@ -11,9 +11,9 @@
 
 namespace gaussmap::detail {
 
-/// Memory for an array that is touched at random, to be given back by std::free(): in huge pages where the system has
-/// them, for a look-up then finds its page in the processor's table, and first touches cost a fraction.
-/// Throws std::bad_alloc.
+/// Allocates memory for an array with random access. The caller frees it with std::free(). It uses huge pages if the
+/// system has them: the processor then finds the page of an address in its table (TLB), and the first access to the
+/// memory is much cheaper. Throws std::bad_alloc.
 inline void* allocatePages(std::size_t bytes) {
   constexpr std::size_t kHuge = std::size_t{1} << 21;
   const bool is_large = bytes >= kHuge;
@@ -21,12 +21,12 @@ inline void* allocatePages(std::size_t bytes) {
                                 : std::aligned_alloc(64, (bytes + 63) / 64 * 64);
   if (memory == nullptr) throw std::bad_alloc();
 #ifdef __linux__
-  if (is_large) madvise(memory, bytes, MADV_HUGEPAGE);  // a hint: without it small pages do
+  if (is_large) madvise(memory, bytes, MADV_HUGEPAGE);  // only a hint: small pages also work
 #endif
   return memory;
 }
 
-/// Of vectors in such memory, whose elements are left as they are by resize().
+/// Allocator for vectors in such memory. resize() does not initialise the new elements.
 template <typename T>
 struct PagesAllocator {
   using value_type = T;

@@ -9,8 +9,9 @@
 
 namespace gaussmap::detail {
 
-/// Key -> index of a cell, where the cells themselves hold the keys: 8 bytes a slot, open addressing, at most half
-/// full. An erased entry leaves no trace, so that it does not slow down with time.
+/// Hash table from the key of a cell to its index. The keys are stored only in the cells. It uses open addressing with
+/// 8 bytes per slot, and is at most half full. An erased entry leaves no tombstone, so the table does not become
+/// slower over time.
 class KeyIndex {
  public:
   static constexpr std::uint32_t kNone = 0xFFFFFFFFu;
@@ -30,7 +31,7 @@ class KeyIndex {
     return static_cast<std::uint32_t>(hash);
   }
 
-  /// The index entered with that hash for which isKey(index) holds, else kNone.
+  /// Returns the index with this hash for which isKey(index) is true, or kNone.
   template <typename IsKey>
   std::uint32_t find(std::uint32_t hash, const IsKey& isKey) const {
     for (std::size_t i = hash & mask();; i = (i + 1) & mask()) {
@@ -40,18 +41,18 @@ class KeyIndex {
     }
   }
 
-  /// The key must not be there yet.
+  /// Adds an entry. The key must not be in the table yet.
   void insert(std::uint32_t hash, std::uint32_t index) {
     if (2 * (size_ + 1) > slots_.size()) grow();
     enter({hash, index});
     ++size_;
   }
 
-  /// The index must be there.
+  /// Removes an entry, which must be in the table.
   void erase(std::uint32_t hash, std::uint32_t index) {
     std::size_t hole = hash & mask();
     while (slots_[hole].index != index) hole = (hole + 1) & mask();
-    // What was pushed on by the erased entry moves back.
+    // Entries that the erased entry had displaced move back.
     for (std::size_t i = (hole + 1) & mask(); slots_[i].index != kNone; i = (i + 1) & mask()) {
       const std::size_t home = slots_[i].hash & mask();
       if (((i - home) & mask()) < ((i - hole) & mask())) continue;
@@ -80,7 +81,7 @@ class KeyIndex {
       if (slot.index != kNone) enter(slot);
   }
 
-  std::vector<Slot> slots_;  // a power of two
+  std::vector<Slot> slots_;  // the size is a power of two
   std::size_t size_ = 0;
 };
 

@@ -12,7 +12,7 @@
 
 namespace gaussmap::detail {
 
-/// Bits an axis has in a Morton code.
+/// Bits per axis of a Morton code.
 inline constexpr int kMortonBits = 21;
 
 /// Spreads the low 21 bits of a number to every third bit.
@@ -25,7 +25,8 @@ inline std::uint64_t spreadBits(std::uint64_t bits) {
   return (bits | bits << 2) & 0x1249249249249249ull;
 }
 
-/// Octant digits from the highest bit down, x in the lowest bit of a digit. Each number below 2^21.
+/// Returns the Morton code: one octant digit (3 bits) per level, coarsest first, with x in the lowest bit. Each
+/// coordinate is below 2^21.
 inline std::uint64_t mortonCode(std::uint64_t x, std::uint64_t y, std::uint64_t z) {
   return spreadBits(x) | spreadBits(y) << 1 | spreadBits(z) << 2;
 }
@@ -37,9 +38,9 @@ struct MortonItem {
 
 using MortonItems = std::vector<MortonItem, PagesAllocator<MortonItem>>;
 
-/// Sorts by code, keeping the order of equal ones. `spare` grows to `count`.
+/// Sorts items by code; the order of equal codes is kept. `spare` is working memory and grows to `count`.
 inline void sortByCode(MortonItem* items, std::size_t count, MortonItems& spare) {
-  constexpr std::size_t kDigits = 2048;  // 11 bits of the code at once
+  constexpr std::size_t kDigits = 2048;  // 11 bits of the code per pass
   constexpr std::size_t kFewItems = 2000;
   if (count < kFewItems) {
     std::stable_sort(items, items + count, [](const MortonItem& a, const MortonItem& b) { return a.code < b.code; });
@@ -47,7 +48,7 @@ inline void sortByCode(MortonItem* items, std::size_t count, MortonItems& spare)
   }
   spare.resize(std::max(spare.size(), count));
   MortonItem *from = items, *to = spare.data();
-  for (int shift = 0; shift < 66; shift += 11) {  // six times, so that they end where they began
+  for (int shift = 0; shift < 66; shift += 11) {  // an even number of passes: the result is in `items`
     std::array<std::size_t, kDigits> place{};
     for (std::size_t i = 0; i < count; ++i) ++place[from[i].code >> shift & (kDigits - 1)];
     std::size_t sum = 0;

@@ -12,7 +12,7 @@ constexpr double kLargestPlain = 1e15;  // longer whole numbers are easier to re
 }  // namespace
 
 std::string numberText(double value) {
-  if (std::isnan(value)) return "nan";  // its sign says nothing
+  if (std::isnan(value)) return "nan";  // the sign of a NaN has no meaning
   char digits[40];
   const bool plain = std::abs(value) < kLargestPlain && std::trunc(value) == value;
   const std::to_chars_result end = plain

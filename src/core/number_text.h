@@ -5,8 +5,8 @@
 
 namespace gaussmap::detail {
 
-/// A number as messages quote it: the shortest text that gives back the same double, whole numbers below 10^15 without
-/// an exponent: "1e-09", "0.25", "100000", "inf", "nan". Does not depend on the locale.
+/// Returns the text of a number for messages: the shortest text that reads back as the same double. Whole numbers below
+/// 10^15 have no exponent. Examples: "1e-09", "0.25", "100000", "inf", "nan". It does not depend on the locale.
 std::string numberText(double value);
 
 }  // namespace gaussmap::detail

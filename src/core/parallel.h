@@ -18,15 +18,16 @@
 
 namespace gaussmap::detail {
 
-/// How many threads `threads` means: 0 = all; never more than there are, for TBB warns of that on stderr.
+/// Returns the number of threads to use; 0 = all cores. It is limited to the number of cores, because TBB prints a
+/// warning on stderr otherwise.
 inline int threadCount(int threads) {
   const int most = tbb::info::default_concurrency();
   return threads <= 0 || threads > most ? most : threads;
 }
 
 #ifdef GAUSSMAP_PLAIN_THREADS
-// For the thread sanitizer: it sees how these threads hand work over. TBB is not built with it, so that every loop of
-// TBB's would look like a race.
+// For the thread sanitizer, which understands the synchronisation of these threads. TBB is not built with the
+// sanitizer, so each of its loops would be reported as a race.
 template <typename Body>
 void parallelFor(std::size_t count, int threads, std::size_t grain, const Body& body) {
   std::atomic<std::size_t> next{0};
@@ -53,8 +54,8 @@ void parallelForWithin(std::size_t count, int, const Body& body) {
   for (std::size_t i = 0; i < count; ++i) body(i);
 }
 #else
-/// Calls body(i) for every i in [0, count) on `threads` threads (0 = all). The bodies must not depend on each
-/// other: results belong into slot i, so that the number of threads never shows in them. `grain` = indices a task.
+/// Calls body(i) for every i in [0, count). `threads`: 0 = all cores. `grain` = indices per task. The calls must not
+/// depend on each other, and each writes its result to slot i, so the result does not depend on the number of threads.
 template <typename Body>
 void parallelFor(std::size_t count, int threads, std::size_t grain, const Body& body) {
   if (threads == 1) {
@@ -69,8 +70,8 @@ void parallelFor(std::size_t count, int threads, std::size_t grain, const Body& 
   });
 }
 
-/// The same from within a body of parallelFor(), on its threads. A thread that waits for the last of these bodies does
-/// not begin another one of the outer loop meanwhile.
+/// Works like parallelFor() inside a body of parallelFor(), on its threads. A thread that waits for the end of this
+/// loop does not start another body of the outer loop.
 template <typename Body>
 void parallelForWithin(std::size_t count, int threads, const Body& body) {
   if (threads == 1)

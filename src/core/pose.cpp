@@ -4,7 +4,10 @@
 #include <cmath>
 #include <sstream>
 
+#include "core/pose_jacobian.h"
+
 namespace gaussmap {
+using namespace detail;
 
 std::string poseFault(const Pose& pose) {
   std::ostringstream text;
@@ -33,8 +36,16 @@ Pose Pose::operator*(const Pose& other) const {
 }
 
 Pose Pose::inverse() const {
-  const Rotation back = rotation.conjugate();
-  return {-(back * translation), back};
+  return {-(rotation.toRotationMatrix().transpose() * translation), rotation.conjugate()};
+}
+
+PoseCovariance covarianceOfInverse(const Pose& pose, const PoseCovariance& covariance) {
+  // An error (dt, dr) of the pose, seen from the other frame: rotated, and moved to the other origin.
+  const Eigen::Matrix3d back = pose.rotation.toRotationMatrix().transpose();
+  PoseCovariance j = PoseCovariance::Zero();
+  j.topRows<3>() = back * poseJacobian(-pose.translation);
+  j.bottomRightCorner<3, 3>() = back;
+  return j * covariance * j.transpose();
 }
 
 }  // namespace gaussmap

@@ -7,7 +7,7 @@
 
 namespace gaussmap::detail {
 
-/// The value with `rank` smaller or equal ones before it in ascending order, rank in [0, n). Reorders the values.
+/// Returns the value at index `rank` in ascending order, rank in [0, n). Reorders the values.
 template <typename T>
 T nthSmallest(std::vector<T>& values, std::size_t rank) {
   const auto place = values.begin() + static_cast<std::ptrdiff_t>(rank);
@@ -15,9 +15,9 @@ T nthSmallest(std::vector<T>& values, std::size_t rank) {
   return *place;
 }
 
-/// Percentile by nearest rank: the smallest value that at least `percent` % of the values do not exceed, the
-/// ceil(percent n / 100)-th. In integers, because 0.95 n rounds up to the next rank for some n. n >= 1. Reorders the
-/// values.
+/// Returns the percentile by nearest rank: the smallest value that is greater than or equal to at least `percent` % of
+/// the values, which is the ceil(percent n / 100)-th. It is computed in integers, because in doubles 0.95 n rounds up
+/// to the next rank for some n. n >= 1. Reorders the values.
 template <typename T>
 T percentile(std::vector<T>& values, std::size_t percent) {
   const std::size_t n = values.size();

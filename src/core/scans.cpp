@@ -8,7 +8,7 @@
 namespace gaussmap {
 namespace {
 
-/// A scan of MemoryScans, which outlive it.
+/// Reads one scan of MemoryScans, which must outlive the reader.
 class MemoryScanReader : public ScanReader {
  public:
   explicit MemoryScanReader(const Scan& scan) : scan_(scan) {}

@@ -10,7 +10,7 @@
 #include "core/check.h"
 #include "core/parallel.h"
 #include "editing/ellipsoid.h"
-#include "editing/thin_map.h"
+#include "editing/keep_cells.h"
 #include "gaussmap/map/sampling.h"
 #include "points/nearest_distances.h"
 
@@ -19,10 +19,10 @@ using namespace detail;
 
 namespace {
 
-/// Knows of each cell of a scale whether it is good enough for what is under it.
-class CellJudge {
+/// Which cells of a scale represent the data under them well enough.
+class CellCoverage {
  public:
-  CellJudge(const GaussianMap<3>& map, double max_error, const CompressOptions& options)
+  CellCoverage(const GaussianMap<3>& map, double max_error, const CompressOptions& options)
       : map_(map), max_error_(max_error), options_(options), data_(map.gaussianCount(0)) {
     parallelFor(data_.size(), options.threads, 1024, [&](std::size_t i) { data_[i] = map.gaussian(i, 0).mean; });
   }
@@ -110,13 +110,13 @@ void check(const GaussianMap<3>& map, double max_error, const CompressOptions& o
 GaussianMap<3> compress(GaussianMap<3> map, double max_error, const CompressOptions& options) {
   check(map, max_error, options);
   if (map.empty() || map.scales() == 1) return map;
-  const CellJudge judge(map, max_error, options);
+  const CellCoverage coverage(map, max_error, options);
   std::vector<std::vector<char>> keep(static_cast<std::size_t>(map.scales()));
   keep.back().assign(map.cellCount(map.scales() - 1), true);
   bool thinner = false;
   for (int s = map.scales() - 1; s > 0; --s) {
     const std::vector<char>& kept = keep[static_cast<std::size_t>(s)];
-    const std::vector<char> good = judge.goodCells(s, kept);
+    const std::vector<char> good = coverage.goodCells(s, kept);
     std::vector<char>& finer = keep[static_cast<std::size_t>(s) - 1];
     finer.resize(map.cellCount(s - 1));
     for (std::size_t cell = 0; cell < kept.size(); ++cell) {
@@ -126,7 +126,7 @@ GaussianMap<3> compress(GaussianMap<3> map, double max_error, const CompressOpti
       thinner |= static_cast<bool>(good[cell]);
     }
   }
-  return thinner ? thinMap<3>(map, keep) : map;
+  return thinner ? keepCells<3>(map, keep) : map;
 }
 
 }  // namespace gaussmap

@@ -5,9 +5,9 @@
 #include <string>
 #include <utility>
 
+#include "map/child_links.h"
 #include "map/coarsen.h"
 #include "map/inherit_occupancy.h"
-#include "map/link_cells.h"
 #include "map/map_scale_builder.h"
 
 namespace gaussmap {
@@ -15,40 +15,40 @@ using namespace detail;
 
 namespace {
 
-/// Which Gaussians of a scale stay, and which of these as less than they were.
-struct Stay {
-  std::vector<char> stays, shrinks;
+/// Which Gaussians of a scale are kept, and which of these lose a part of their points.
+struct KeptGaussians {
+  std::vector<char> is_kept, shrinks;
 };
 
 template <int D>
-Stay whatStays(const GaussianMap<D>& map, int s, const Stay& finer,
-               const std::function<bool(const Vector<D>&)>& isInside) {
+KeptGaussians keptGaussians(const GaussianMap<D>& map, int s, const KeptGaussians& finer,
+                            const std::function<bool(const Vector<D>&)>& isInside) {
   const std::size_t count = map.gaussianCount(s);
-  Stay own{std::vector<char>(count, false), std::vector<char>(count, false)};
-  for (std::size_t i = 0; s > 0 && i < finer.stays.size(); ++i) {
+  KeptGaussians own{std::vector<char>(count, false), std::vector<char>(count, false)};
+  for (std::size_t i = 0; s > 0 && i < finer.is_kept.size(); ++i) {
     const std::size_t parent = map.parentOf(i, s - 1);
-    own.stays[parent] |= finer.stays[i];
-    own.shrinks[parent] |= !finer.stays[i] || finer.shrinks[i];
+    own.is_kept[parent] |= finer.is_kept[i];
+    own.shrinks[parent] |= !finer.is_kept[i] || finer.shrinks[i];
   }
   for (std::size_t cell = 0; cell < map.cellCount(s); ++cell) {
     if (!map.isLeaf(cell, s)) continue;
     const IndexRange range = map.gaussiansOf(cell, s);
-    for (std::size_t i = range.first; i < range.last; ++i) own.stays[i] = isInside(map.gaussian(i, s).mean);
+    for (std::size_t i = range.first; i < range.last; ++i) own.is_kept[i] = isInside(map.gaussian(i, s).mean);
   }
   return own;
 }
 
-/// What stays of a scale, linked to nothing yet. `places` = where its Gaussians stand now.
+/// What is kept of a scale, without links. `places` = the new index of each Gaussian.
 template <int D>
-MapScale<D> cropped(const GaussianMap<D>& map, int s, const Stay& stay, std::vector<std::uint32_t>& places) {
+MapScale<D> cropped(const GaussianMap<D>& map, int s, const KeptGaussians& kept, std::vector<std::uint32_t>& places) {
   const MapScale<D>& old = map.scale(s);
   MapScaleBuilder<D> scale;
-  places.assign(stay.stays.size(), 0);
+  places.assign(kept.is_kept.size(), 0);
   for (std::size_t cell = 0; cell < old.keys.size(); ++cell) {
     const IndexRange range = map.gaussiansOf(cell, s);
     bool is_first = true;
     for (std::size_t i = range.first; i < range.last; ++i) {
-      if (!stay.stays[i]) continue;
+      if (!kept.is_kept[i]) continue;
       if (std::exchange(is_first, false)) scale.addCell(old.keys[cell]);
       places[i] = static_cast<std::uint32_t>(scale.gaussians());
       scale.copyGaussian(old, i);
@@ -57,13 +57,13 @@ MapScale<D> cropped(const GaussianMap<D>& map, int s, const Stay& stay, std::vec
   return scale.take();
 }
 
-/// Sums the clusters that shrink anew from what is linked to them.
+/// Recomputes the clusters that shrink from what is linked to them.
 template <int D>
-void matchShrunk(const GaussianMap<D>& map, int s, const Stay& stay, const std::vector<std::uint32_t>& places,
+void matchShrunk(const GaussianMap<D>& map, int s, const KeptGaussians& kept, const std::vector<std::uint32_t>& places,
                  const MapScale<D>& finer, MapScale<D>& scale) {
   std::vector<char> shrinks(scale.gaussians.size(), false);
-  for (std::size_t i = 0; i < stay.stays.size(); ++i)
-    if (stay.stays[i]) shrinks[places[i]] = stay.shrinks[i];
+  for (std::size_t i = 0; i < kept.is_kept.size(); ++i)
+    if (kept.is_kept[i]) shrinks[places[i]] = kept.shrinks[i];
   std::vector<Gaussian<D>> data;
   for (std::size_t cell = 0; cell < scale.keys.size(); ++cell) {
     const IndexRange children{scale.first_child[cell], scale.first_child[cell + 1]};
@@ -86,16 +86,16 @@ void matchShrunk(const GaussianMap<D>& map, int s, const Stay& stay, const std::
 template <int D>
 GaussianMap<D> crop(const GaussianMap<D>& map, const std::function<bool(const Vector<D>&)>& isInside) {
   std::vector<MapScale<D>> scales;
-  Stay finer;
+  KeptGaussians finer;
   for (int s = 0; s < map.scales(); ++s) {
-    Stay own = whatStays(map, s, finer, isInside);
+    KeptGaussians own = keptGaussians(map, s, finer, isInside);
     std::vector<std::uint32_t> places;
     MapScale<D> scale = cropped(map, s, own, places);
     if (s > 0) {
       MapScale<D>& below = scales.back();
-      for (std::size_t i = 0; i < finer.stays.size(); ++i)
-        if (finer.stays[i]) below.parent.push_back(places[map.parentOf(i, s - 1)]);
-      scale.first_child = linkCells<D>(below.keys, scale.keys, map.grid(), s);
+      for (std::size_t i = 0; i < finer.is_kept.size(); ++i)
+        if (finer.is_kept[i]) below.parent.push_back(places[map.parentOf(i, s - 1)]);
+      scale.first_child = childLinks<D>(below.keys, scale.keys, map.grid(), s);
       matchShrunk(map, s, own, places, below, scale);
       inheritOccupancy<D>(below, scale);
     }

@@ -12,7 +12,7 @@
 #include "core/check.h"
 #include "core/parallel.h"
 #include "core/pi.h"
-#include "map/near_cells.h"
+#include "map/neighbour_keys.h"
 
 namespace gaussmap {
 using namespace detail;
@@ -27,11 +27,11 @@ double chiSquaredTail(double x) {
   return std::erfc(std::sqrt(0.5 * x)) + std::sqrt(2.0 * x / kPi) * tail;
 }
 
-/// One map beside another.
+/// Compares the Gaussians of one map with those of another.
 template <int D>
-class OneSide {
+class MapComparison {
  public:
-  OneSide(const GaussianMap<D>& map, const GaussianMap<D>& other, const DiffOptions& options)
+  MapComparison(const GaussianMap<D>& map, const GaussianMap<D>& other, const DiffOptions& options)
       : map_(map), other_(other), options_(options), prior_(map.grid().side(options.scale)) {
     prior_ *= prior_ / 12.0;
   }
@@ -136,7 +136,7 @@ template <int D>
 MapDiff diffMaps(const GaussianMap<D>& first, const GaussianMap<D>& second, const DiffOptions& options) {
   check(first, second, options);
   const int s = options.scale;
-  const OneSide<D> from_first(first, second, options), from_second(second, first, options);
+  const MapComparison<D> from_first(first, second, options), from_second(second, first, options);
   const std::vector<double> p_first = from_first.pValues(), p_second = from_second.pValues();
   MapDiff diff{std::vector<Difference>(p_first.size()), std::vector<Difference>(p_second.size())};
   for (std::size_t i = 0; i < p_first.size(); ++i) diff.first[i].p_value = p_first[i];

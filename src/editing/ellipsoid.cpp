@@ -7,8 +7,8 @@ namespace gaussmap::detail {
 namespace {
 
 constexpr double kSquaredRadius = 7.814727903251179;  // 95 % quantile of chi^2 with three degrees of freedom
-constexpr double kLeastHalfAxis = 1e-12;              // of the largest: what rounding may have made of an eigenvalue
-constexpr int kMostSteps = 100;                       // four or five do
+constexpr double kMinHalfAxis = 1e-12;                // of the largest: what rounding may have made of an eigenvalue
+constexpr int kMaxSteps = 100;                        // four or five do
 
 }  // namespace
 
@@ -16,7 +16,7 @@ Ellipsoid95::Ellipsoid95(const Gaussian<3>& gaussian) : centre_(gaussian.mean) {
   const PrincipalAxes<3> principal = principalAxes<3>(gaussian);
   axes_ = principal.directions;
   half_axes_ = (kSquaredRadius * principal.variances.cwiseMax(0.0)).cwiseSqrt();
-  half_axes_ = half_axes_.cwiseMax(kLeastHalfAxis * half_axes_.maxCoeff());
+  half_axes_ = half_axes_.cwiseMax(kMinHalfAxis * half_axes_.maxCoeff());
 }
 
 double Ellipsoid95::distance(const Vector<3>& point) const {
@@ -27,7 +27,7 @@ double Ellipsoid95::distance(const Vector<3>& point) const {
   const Vector<3> squares = half_axes_.cwiseAbs2();
   double t = (half_axes_.cwiseProduct(y) - squares).maxCoeff();
   t = t > 0.0 ? t : 0.0;
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     const Vector<3> shifted = (squares.array() + t).matrix();
     const Vector<3> terms = half_axes_.cwiseProduct(y).cwiseQuotient(shifted).cwiseAbs2();
     const double change = (terms.sum() - 1.0) / (2.0 * terms.cwiseQuotient(shifted).sum());

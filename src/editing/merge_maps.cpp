@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include "editing/regroup.h"
-#include "map/areas.h"
+#include "editing/recluster.h"
 #include "map/map_scale_builder.h"
-#include "mapping/blur.h"
+#include "map/occupied_areas.h"
+#include "mapping/clustering_noise.h"
 
 namespace gaussmap {
 using namespace detail;
@@ -75,13 +75,13 @@ bool before(const Source<D>& p, const Source<D>& q) {
 }
 
 template <int D>
-class Merger {
+class MapMerger {
  public:
-  Merger(const GaussianMap<D>& a, const GaussianMap<D>& b, const MergeMapsOptions& options)
+  MapMerger(const GaussianMap<D>& a, const GaussianMap<D>& b, const MergeMapsOptions& options)
       : a_(a),
         b_(b),
         options_(options),
-        exact_(a.canGrow() && b.canGrow()),
+        exact_(a.acceptsScans() && b.acceptsScans()),
         is_refined_(isRefined(a) || isRefined(b)),
         pairs_(pairCells(a, b)) {}
 
@@ -168,7 +168,7 @@ class Merger {
     data.reserve(sources.size());
     for (const Source<D>& source : sources) data.push_back(source.gaussian);
     const std::vector<double> areas(data.size(), 1.0);
-    blurForClustering(data, a_.grid().side(0));
+    addClusteringNoise(data, a_.grid().side(0));
     AgglomerateOptions agglomeration;
     agglomeration.cost = options_.merge_cost;
     return labels(agglomerate<D>(data, areas, agglomeration), parts);
@@ -263,8 +263,8 @@ class Merger {
       if (pair.a && pair.b) extra += countIn(pair, s) - 1;
     }
     if (s > 1) startAnew(finer, keep, s, group);
-    const Regrouping<D> from{finer, a_.grid(), s, group, areas, options_.threads};
-    Regrouped<D> made = regroup<D>(from, [&](const MapScale<D>& scale, const std::vector<double>& own_areas) {
+    const ReclusterInput<D> from{finer, a_.grid(), s, group, areas, options_.threads};
+    ReclusterResult<D> made = recluster<D>(from, [&](const MapScale<D>& scale, const std::vector<double>& own_areas) {
       if (!is_refined_) return onePerCell<D>(scale);
       return ScaleClusters::within(scale, a_.grid(), s, own_areas, options_.merge_cost, options_.threads, keep)
           .cut(extra);
@@ -312,7 +312,7 @@ GaussianMap<D> mergeMaps(const GaussianMap<D>& a, const GaussianMap<D>& b, const
         "a compressed map has no detail to merge in some of its cells: merge the maps that it was made from, then "
         "compress");
   if (a.empty() || b.empty()) return a.empty() ? b : a;
-  return Merger<D>(a, b, options).run();
+  return MapMerger<D>(a, b, options).run();
 }
 
 template GaussianMap<2> mergeMaps<2>(const GaussianMap<2>&, const GaussianMap<2>&, const MergeMapsOptions&);

@@ -12,7 +12,7 @@
 #include "core/check.h"
 #include "core/quantile.h"
 #include "gaussmap/map/sampling.h"
-#include "map/areas.h"
+#include "map/occupied_areas.h"
 #include "mapping/budget.h"
 #include "mapping/scale_clusters.h"
 #include "points/nearest_distances.h"

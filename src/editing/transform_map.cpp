@@ -2,22 +2,24 @@
 #include "gaussmap/editing/transform_map.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/parallel.h"
-#include "editing/regroup.h"
+#include "core/pose_jacobian.h"
+#include "editing/recluster.h"
 #include "gaussmap/mapping/refine.h"
-#include "map/areas.h"
 #include "map/coarsen.h"
 #include "map/inherit_occupancy.h"
 #include "map/map_scale_builder.h"
+#include "map/occupied_areas.h"
 #include "mapping/scale_clusters.h"
 
 namespace gaussmap {
@@ -25,56 +27,65 @@ using namespace detail;
 
 namespace {
 
-template <int D>
-void check(const RigidMotion<D>& motion) {
-  const Matrix<D>& rotation = motion.rotation;
-  if (!motion.translation.allFinite() || !rotation.allFinite()) throw std::invalid_argument("the motion is not finite");
-  const double off = (rotation * rotation.transpose() - Matrix<D>::Identity()).cwiseAbs().maxCoeff();
-  if (off > 1e-9 || Eigen::Matrix<double, D, D>(rotation).determinant() < 0.0)
-    throw std::invalid_argument("the motion's rotation is none: its matrix is not orthogonal with determinant 1");
-  if (!motion.covariance) return;
-  const Eigen::MatrixXd cov = *motion.covariance;
+void check(const PoseCovariance& covariance) {
   const std::string what = "the covariance of the motion ";
-  if (!cov.allFinite()) throw std::invalid_argument(what + "is not finite");
-  const double scale = cov.cwiseAbs().maxCoeff();
-  if ((cov - cov.transpose()).cwiseAbs().maxCoeff() > 1e-9 * scale)
+  if (!covariance.allFinite()) throw std::invalid_argument(what + "is not finite");
+  const double scale = covariance.cwiseAbs().maxCoeff();
+  if ((covariance - covariance.transpose()).cwiseAbs().maxCoeff() > 1e-9 * scale)
     throw std::invalid_argument(what + "is not symmetric");
-  if (Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(cov).eigenvalues().minCoeff() < -1e-9 * scale)
+  if (Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(covariance).eigenvalues().minCoeff() < -1e-9 * scale)
     throw std::invalid_argument(what + "is not positive semi-definite");
 }
 
-/// d (moved point) / d (translation, rotation); `arm` = the moved point about the moved origin.
-Eigen::Matrix<double, 3, 6> jacobian(const Vector<3>& arm) {
-  Eigen::Matrix<double, 3, 6> result;
-  result << 1, 0, 0, 0, arm.z(), -arm.y(),  //
-      0, 1, 0, -arm.z(), 0, arm.x(),        //
-      0, 0, 1, arm.y(), -arm.x(), 0;
-  return result;
-}
-Eigen::Matrix<double, 2, 3> jacobian(const Vector<2>& arm) {
-  Eigen::Matrix<double, 2, 3> result;
-  result << 1, 0, -arm.y(),  //
-      0, 1, arm.x();
-  return result;
-}
-
-/// Of a Gaussian in the map frame.
+/// A pose, in the dimensions of a map, with the covariance of TransformOptions.
 template <int D>
-Gaussian<D> moved(const Gaussian<D>& gaussian, const RigidMotion<D>& motion) {
-  const Vector<D> arm = motion.rotation * gaussian.mean;
-  Gaussian<D> result{arm + motion.translation, motion.rotation * gaussian.cov * motion.rotation.transpose(),
-                     gaussian.weight};
-  if (motion.covariance) {
-    const auto j = jacobian(arm);
-    result.cov += j * *motion.covariance * j.transpose();
+struct Motion {
+  Matrix<D> rotation;
+  Vector<D> translation;
+  std::optional<PoseCovariance> covariance;
+
+  Motion(const Pose& given, const std::optional<PoseCovariance>& known) : covariance(known) {
+    if (const std::string fault = poseFault(given); !fault.empty())
+      throw std::invalid_argument("the motion of the map: " + fault);
+    const Pose pose = normalised(given);
+    if constexpr (D == 2) requirePlanar(pose);
+    rotation = pose.rotation.toRotationMatrix().topLeftCorner<D, D>();
+    translation = pose.translation.head<D>();
+    if (covariance) check(*covariance);
   }
-  result.cov = 0.5 * (result.cov + Matrix<D>(result.cov.transpose()));  // to the last bit
-  return result;
-}
 
-/// A Gaussian of the finest scale on its way.
+  bool isIdentity() const {
+    return rotation == Matrix<D>::Identity() && translation == Vector<D>::Zero() && !covariance;
+  }
+
+  /// Of a Gaussian in the map frame.
+  Gaussian<D> operator*(const Gaussian<D>& gaussian) const {
+    const Vector<D> arm = rotation * gaussian.mean;
+    Gaussian<D> result{arm + translation, rotation * gaussian.cov * rotation.transpose(), gaussian.weight};
+    if (covariance) {
+      Eigen::Vector3d arm3 = Eigen::Vector3d::Zero();
+      arm3.head<D>() = arm;
+      // In the plane, the columns of z and of the rotations about x and y are zero.
+      const Eigen::Matrix<double, D, 6> j = poseJacobian(arm3).topRows<D>();
+      result.cov += j * *covariance * j.transpose();
+    }
+    result.cov = 0.5 * (result.cov + Matrix<D>(result.cov.transpose()));  // to the last bit
+    return result;
+  }
+
+ private:
+  static void requirePlanar(const Pose& pose) {
+    if (pose.translation.z() == 0.0 && pose.rotation.x() == 0.0 && pose.rotation.y() == 0.0) return;
+    std::ostringstream text;
+    text << "the motion of a 2-D map is not planar: the translation has z = " << pose.translation.z()
+         << " and the quaternion x = " << pose.rotation.x() << ", y = " << pose.rotation.y() << ", all must be 0";
+    throw std::invalid_argument(text.str());
+  }
+};
+
+/// A Gaussian of the finest scale, moved.
 template <int D>
-struct Traveller {
+struct MovedGaussian {
   Gaussian<D> gaussian;  // map frame of the target
   CellKey<D> key;        // its cell there
   float log_odds = kMaxOccupancy;
@@ -84,15 +95,15 @@ struct Traveller {
 /// Halves a Gaussian along its long axis while that is longer than a cell and the halves lie in different cells.
 /// The parts have together its weight, mean and covariance: that of two halves of a uniform rod.
 template <int D>
-void split(const Traveller<D>& whole, const Grid<D>& grid, std::vector<Traveller<D>>& parts) {
+void split(const MovedGaussian<D>& whole, const Grid<D>& grid, std::vector<MovedGaussian<D>>& parts) {
   const PrincipalAxes<D> axes = principalAxes(whole.gaussian);
   const double variance = axes.variances(D - 1), side = grid.side(0);
   if (12.0 * variance > side * side) {
     const Vector<D> step = std::sqrt(0.75 * variance) * axes.directions.col(D - 1);
-    Traveller<D> low = whole;
+    MovedGaussian<D> low = whole;
     low.gaussian.weight *= 0.5;
     low.gaussian.cov -= step * step.transpose();
-    Traveller<D> high = low;
+    MovedGaussian<D> high = low;
     low.gaussian.mean -= step;
     high.gaussian.mean += step;
     low.key = grid.keyOf(low.gaussian.mean);
@@ -107,9 +118,9 @@ void split(const Traveller<D>& whole, const Grid<D>& grid, std::vector<Traveller
 }
 
 template <int D>
-class Mover {
+class MapTransformer {
  public:
-  Mover(const GaussianMap<D>& map, const RigidMotion<D>& motion, const TransformOptions& options)
+  MapTransformer(const GaussianMap<D>& map, const Motion<D>& motion, const TransformOptions& options)
       : map_(map),
         motion_(motion),
         options_(options),
@@ -129,30 +140,30 @@ class Mover {
   }
 
  private:
-  std::vector<Traveller<D>> travellers() const {
-    std::vector<Traveller<D>> all(map_.gaussianCount(0));
+  std::vector<MovedGaussian<D>> movedGaussians() const {
+    std::vector<MovedGaussian<D>> all(map_.gaussianCount(0));
     parallelFor(map_.cellCount(0), options_.threads, 1024, [&](std::size_t cell) {
       const Vector<D> centre = map_.grid().centre(map_.scale(0).keys[cell], 0);
       const IndexRange range = map_.gaussiansOf(cell, 0);
       for (std::size_t i = range.first; i < range.last; ++i) {
         Gaussian<D> gaussian = map_.localGaussian(i, 0);
         gaussian.mean += centre;
-        gaussian = moved(gaussian, motion_);
+        gaussian = motion_ * gaussian;
         all[i] = {gaussian, grid_.keyOf(gaussian.mean), map_.logOdds(i, 0),
                   map_.scales() > 1 ? map_.scale(0).parent[i] : 0};
       }
     });
     if (grid_.side(0) >= map_.grid().side(0)) return all;
-    std::vector<Traveller<D>> parts;
-    for (const Traveller<D>& one : all) split(one, grid_, parts);
+    std::vector<MovedGaussian<D>> parts;
+    for (const MovedGaussian<D>& one : all) split(one, grid_, parts);
     return parts;
   }
 
   MapScale<D> finestScale(std::vector<std::uint32_t>& group) const {
-    const std::vector<Traveller<D>> all = travellers();
+    const std::vector<MovedGaussian<D>> all = movedGaussians();
     std::vector<CellKey<D>> keys;
     keys.reserve(all.size());
-    for (const Traveller<D>& one : all) keys.push_back(one.key);
+    for (const MovedGaussian<D>& one : all) keys.push_back(one.key);
     std::vector<std::uint32_t> order = keyOrder<D>(keys, grid_.options().ratio, grid_.scales() - 1);
     MapScaleBuilder<D> finest;
     for (std::size_t first = 0, last = 0; first < order.size(); first = last) {
@@ -165,7 +176,7 @@ class Mover {
       std::vector<Gaussian<D>> here;
       float highest = -kMaxOccupancy;
       for (std::size_t i = first; i < last; ++i) {
-        const Traveller<D>& one = all[order[i]];
+        const MovedGaussian<D>& one = all[order[i]];
         highest = std::max(highest, one.log_odds);
         here.push_back(one.gaussian);
         here.back().mean -= centre;
@@ -189,8 +200,8 @@ class Mover {
                           std::vector<double>& areas) const {
     if (s > 1) std::iota(group.begin(), group.end(), 0u);
     const bool is_refined = map_.gaussianCount(s) > map_.cellCount(s);
-    const Regrouping<D> from{finer, grid_, s, group, areas, options_.threads};
-    Regrouped<D> made = regroup<D>(from, [&](const MapScale<D>& scale, const std::vector<double>& own_areas) {
+    const ReclusterInput<D> from{finer, grid_, s, group, areas, options_.threads};
+    ReclusterResult<D> made = recluster<D>(from, [&](const MapScale<D>& scale, const std::vector<double>& own_areas) {
       const std::size_t cells = scale.keys.size();
       if (!is_refined || map_.gaussianCount(s) <= cells) return onePerCell<D>(scale);
       return ScaleClusters::within(scale, grid_, s, own_areas, options_.merge_cost, options_.threads)
@@ -224,7 +235,7 @@ class Mover {
   }
 
   const GaussianMap<D>& map_;
-  const RigidMotion<D>& motion_;
+  const Motion<D>& motion_;
   const TransformOptions& options_;
   const Grid<D> grid_;
   const bool same_cells_;
@@ -233,43 +244,19 @@ class Mover {
 }  // namespace
 
 template <int D>
-RigidMotion<D> RigidMotion<D>::inverse() const {
-  RigidMotion result{rotation.transpose(), -(rotation.transpose() * translation), std::nullopt};
-  if (!covariance) return result;
-  // An error (dt, dr) of t and R, seen from the other frame: rotated, and moved to the other origin.
-  PoseCovariance<D> j = PoseCovariance<D>::Zero();
-  j.template topRows<D>() = result.rotation * jacobian(Vector<D>(-translation));
-  if constexpr (D == 3)
-    j.template bottomRightCorner<3, 3>() = result.rotation;
-  else
-    j(2, 2) = 1.0;
-  result.covariance = j * *covariance * j.transpose();
-  return result;
-}
-
-RigidMotion<3> rigidMotion(const Pose& pose) {
-  return {pose.rotation.toRotationMatrix(), pose.translation, std::nullopt};
-}
-
-template <int D>
-GaussianMap<D> transformMap(const GaussianMap<D>& map, const RigidMotion<D>& motion, const TransformOptions& options) {
-  check(motion);
+GaussianMap<D> transformMap(const GaussianMap<D>& map, const Pose& pose, const TransformOptions& options) {
+  const Motion<D> motion(pose, options.covariance);
   const MapOptions grid = Grid<D>(options.grid.value_or(map.options())).options();
-  const bool stays = motion.rotation == Matrix<D>::Identity() && motion.translation == Vector<D>::Zero();
-  if (stays && !motion.covariance && grid == map.options()) return map;
+  if (motion.isIdentity() && grid == map.options()) return map;
   if (map.isCompressed())
     throw std::invalid_argument(
         "a compressed map has no detail that could be sorted into other cells: move the map that it was made from, "
         "then compress");
   if (map.empty()) return GaussianMap<D>(grid);
-  return Mover<D>(map, motion, options).run();
+  return MapTransformer<D>(map, motion, options).run();
 }
 
-#define GAUSSMAP_INSTANTIATE(D)   \
-  template struct RigidMotion<D>; \
-  template GaussianMap<D> transformMap<D>(const GaussianMap<D>&, const RigidMotion<D>&, const TransformOptions&);
-GAUSSMAP_INSTANTIATE(2)
-GAUSSMAP_INSTANTIATE(3)
-#undef GAUSSMAP_INSTANTIATE
+template GaussianMap<2> transformMap<2>(const GaussianMap<2>&, const Pose&, const TransformOptions&);
+template GaussianMap<3> transformMap<3>(const GaussianMap<3>&, const Pose&, const TransformOptions&);
 
 }  // namespace gaussmap

@@ -12,7 +12,7 @@
 #include "core/check.h"
 #include "core/parallel.h"
 #include "core/quantile.h"
-#include "map/near_cells.h"
+#include "map/neighbour_keys.h"
 
 namespace gaussmap {
 using namespace detail;

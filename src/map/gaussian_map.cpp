@@ -9,8 +9,8 @@
 namespace gaussmap {
 namespace {
 
-constexpr std::size_t kMostEntries = 0xFFFFFFFFu;  // indices of cells and Gaussians have 32 bits
-constexpr double kMostOffset = 0.501;  // of a mean from the cell's centre, in sides: half, and some rounding
+constexpr std::size_t kMaxEntries = 0xFFFFFFFFu;  // indices of cells and Gaussians have 32 bits
+constexpr double kMaxOffset = 0.501;              // of a mean from the cell's centre, in sides: half, and some rounding
 
 [[noreturn]] void refuse(int scale, const std::string& what) {
   throw std::invalid_argument("scale " + std::to_string(scale) + ": " + what);
@@ -29,7 +29,7 @@ bool hasEmptyRange(const std::vector<std::uint32_t>& starts) {
 template <int D>
 void checkScale(const MapScale<D>& scale, int s, double side) {
   const std::size_t cells = scale.keys.size();
-  if (cells > kMostEntries || scale.gaussianCount() > kMostEntries) refuse(s, "more than 2^32 - 1 entries");
+  if (cells > kMaxEntries || scale.gaussianCount() > kMaxEntries) refuse(s, "more than 2^32 - 1 entries");
   if (!scale.moments.empty()) {
     if (s > 0) refuse(s, "only the finest scale holds moments");
     if (!scale.gaussians.empty() || scale.moments.size() != cells) refuse(s, "moments do not match the cells");
@@ -39,7 +39,7 @@ void checkScale(const MapScale<D>& scale, int s, double side) {
   for (const Gaussian<D>& gaussian : scale.gaussians) {
     if (!(gaussian.weight > 0.0 && std::isfinite(gaussian.weight)) || !gaussian.cov.allFinite())
       refuse(s, "a Gaussian without weight or covariance");
-    if (!gaussian.mean.allFinite() || gaussian.mean.cwiseAbs().maxCoeff() > kMostOffset * side)
+    if (!gaussian.mean.allFinite() || gaussian.mean.cwiseAbs().maxCoeff() > kMaxOffset * side)
       refuse(s, "a Gaussian's mean lies outside its cell");
   }
   if (scale.first_gaussian.empty()

@@ -16,8 +16,8 @@ namespace {
 
 // Beyond this a covariance of the coarsest scale would not fit into doubles beside its noise floor
 // (condition number 1e14).
-constexpr double kMostSidesPerNoise = 1e7;
-constexpr std::int64_t kMostCellsAlongSide = std::int64_t{1} << 30;
+constexpr double kMaxSidesPerNoise = 1e7;
+constexpr std::int64_t kMaxCellsAlongSide = std::int64_t{1} << 30;
 
 }  // namespace
 
@@ -45,12 +45,12 @@ Grid<D>::Grid(const MapOptions& options) : options_(options) {
   std::int64_t span = 1;
   for (int scale = 0; scale < options.scales; ++scale) {
     if (scale > 0) span *= options.ratio;
-    require(span <= kMostCellsAlongSide, "scales", options.scales,
+    require(span <= kMaxCellsAlongSide, "scales", options.scales,
             "the coarsest cell must not be wider than 2^30 finest cells: take fewer scales or a smaller ratio");
     spans_.push_back(span);
     sides_.push_back(options.resolution * static_cast<double>(span));
   }
-  require(sides_.back() <= kMostSidesPerNoise * options_.noise, "noise", options_.noise,
+  require(sides_.back() <= kMaxSidesPerNoise * options_.noise, "noise", options_.noise,
           "must be at least 1e-7 of the coarsest cell's side: take fewer scales or more noise");
 }
 

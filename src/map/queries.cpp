@@ -8,7 +8,7 @@
 #include <string>
 #include <tuple>
 
-#include "map/near_cells.h"
+#include "map/neighbour_keys.h"
 
 namespace gaussmap {
 using namespace detail;
@@ -52,7 +52,7 @@ double distanceToCell(const GaussianMap<D>& map, const Vector<D>& point, std::si
 
 /// Gaussians of the cell nearest in the sense of the mean, if nearer than what is known.
 template <int D>
-void improve(const GaussianMap<D>& map, const Vector<D>& point, std::size_t cell, int scale, Nearest<D>& best) {
+void improve(const GaussianMap<D>& map, const Vector<D>& point, std::size_t cell, int scale, NearestGaussian<D>& best) {
   const Vector<D> local = point - map.grid().centre(map.scale(scale).keys[cell], scale);
   const IndexRange range = map.gaussiansOf(cell, scale);
   for (std::size_t i = range.first; i < range.last; ++i) {
@@ -143,9 +143,9 @@ double logLikelihood(const GaussianMap<D>& map, const Vector<D>& point) {
 }
 
 template <int D>
-std::optional<Nearest<D>> nearest(const GaussianMap<D>& map, const Vector<D>& point, int scale) {
+std::optional<NearestGaussian<D>> nearest(const GaussianMap<D>& map, const Vector<D>& point, int scale) {
   if (map.cellCount(scale) == 0) return std::nullopt;
-  Nearest<D> best{std::numeric_limits<std::size_t>::max(), std::numeric_limits<double>::infinity()};
+  NearestGaussian<D> best{std::numeric_limits<std::size_t>::max(), std::numeric_limits<double>::infinity()};
   forEachNeighbour<D>(map, map.grid().keyOf(point, scale), scale,
                       [&](std::size_t cell) { improve<D>(map, point, cell, scale, best); });
   // Nothing outside the neighbouring cells is nearer than the width of a cell.
@@ -223,15 +223,15 @@ std::optional<float> logOddsAt(const GaussianMap<D>& map, const Vector<D>& point
   return std::nullopt;
 }
 
-#define GAUSSMAP_INSTANTIATE(D)                                                                  \
-  template std::vector<GaussianId> gaussiansOfScale<D>(const GaussianMap<D>&, int);              \
-  template std::vector<GaussianId> leaves<D>(const GaussianMap<D>&);                             \
-  template LeafCounts leafCounts<D>(const GaussianMap<D>&, int);                                 \
-  template std::optional<Box<(D)>> extentOf<D>(const GaussianMap<D>&);                           \
-  template double logLikelihood<D>(const GaussianMap<D>&, const Vector<D>&, int);                \
-  template double logLikelihood<D>(const GaussianMap<D>&, const Vector<D>&);                     \
-  template std::optional<Nearest<(D)>> nearest<D>(const GaussianMap<D>&, const Vector<D>&, int); \
-  template std::optional<Vector<(D)>> normalAt<D>(const GaussianMap<D>&, const Vector<D>&);      \
+#define GAUSSMAP_INSTANTIATE(D)                                                                          \
+  template std::vector<GaussianId> gaussiansOfScale<D>(const GaussianMap<D>&, int);                      \
+  template std::vector<GaussianId> leaves<D>(const GaussianMap<D>&);                                     \
+  template LeafCounts leafCounts<D>(const GaussianMap<D>&, int);                                         \
+  template std::optional<Box<(D)>> extentOf<D>(const GaussianMap<D>&);                                   \
+  template double logLikelihood<D>(const GaussianMap<D>&, const Vector<D>&, int);                        \
+  template double logLikelihood<D>(const GaussianMap<D>&, const Vector<D>&);                             \
+  template std::optional<NearestGaussian<(D)>> nearest<D>(const GaussianMap<D>&, const Vector<D>&, int); \
+  template std::optional<Vector<(D)>> normalAt<D>(const GaussianMap<D>&, const Vector<D>&);              \
   template std::optional<float> logOddsAt<D>(const GaussianMap<D>&, const Vector<D>&);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)

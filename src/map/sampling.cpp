@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kGrain = 16;  // Gaussians a task
 
-std::size_t mostTries(std::size_t count) {
+std::size_t maxTries(std::size_t count) {
   return 1000 + 200 * count;
 }
 
@@ -47,7 +47,7 @@ std::size_t sampleOne(const GaussianMap<D>& map, int scale, std::size_t index, c
 
   Random random = Random::forPart(seed, partOf<D>(scale, key, index - map.gaussiansOf(cell, scale).first));
   std::size_t placed = 0;
-  for (std::size_t tries = mostTries(count); placed < count && tries > 0; --tries) {
+  for (std::size_t tries = maxTries(count); placed < count && tries > 0; --tries) {
     const Vector<D> standard = GaussianSampler<D>::standard(random);
     const Vector<D> offset = sampler.fromStandard(standard);
     if (!((offset.array() >= lowest.array()).all() && (offset.array() <= highest.array()).all())) continue;

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "core/quantile.h"
-#include "map/boxes_of_parents.h"
 #include "map/map_scale_builder.h"
 #include "map/member_boxes.h"
+#include "map/parent_boxes.h"
 #include "map/sample_within.h"
 #include "mapping/budget.h"
 #include "mapping/refine_scales.h"
@@ -21,9 +21,9 @@ namespace gaussmap::detail {
 namespace {
 
 /// Measures cuts of coarse scales against samples of the finest, one scale after the other from the finest up.
-class CutMeter {
+class CutErrorMeter {
  public:
-  CutMeter(const GaussianMap<3>& map, const ErrorSampling& sampling, int threads)
+  CutErrorMeter(const GaussianMap<3>& map, const ErrorSampling& sampling, int threads)
       : grid_(map.grid()), sampling_(sampling), threads_(threads), finer_boxes_(memberBoxes<3>(map, 0)) {
     const SampleOptions data{sampling.data, 1, SampleShare::Mass, sampling.seed, threads};
     if (!map.empty()) data_ = sampleMap(map, 0, data).points;
@@ -31,9 +31,8 @@ class CutMeter {
 
   ErrorPoint measure(const ScalePair<3>& pair, const ClusterCut& cut) const {
     const std::vector<Gaussian<3>> gaussians = clusterGaussians(pair, cut, threads_);
-    const std::vector<Box<3>> boxes = boxesOfParents<3>(finer_boxes_, cut.cluster, gaussians.size());
-    MapScaleBuilder<3> alone;  // the scale as a map of its own: its samples need
-                               // nothing else, but its key order is another
+    const std::vector<Box<3>> boxes = parentBoxes<3>(finer_boxes_, cut.cluster, gaussians.size());
+    MapScaleBuilder<3> alone;  // the scale as a map of its own, which has another key order: samples need only this
     std::vector<Box<3>> alone_boxes;
     for (const std::uint32_t from : keyOrder<3>(pair.coarse.keys, 2, 0)) {
       alone.addCell(pair.coarse.keys[from]);
@@ -53,7 +52,7 @@ class CutMeter {
   }
 
   /// This cut becomes the finer scale of the next one.
-  void choose(const ClusterCut& cut) { finer_boxes_ = boxesOfParents<3>(finer_boxes_, cut.cluster, cut.clusters()); }
+  void choose(const ClusterCut& cut) { finer_boxes_ = parentBoxes<3>(finer_boxes_, cut.cluster, cut.clusters()); }
 
  private:
   const Grid<3> grid_;
@@ -64,10 +63,10 @@ class CutMeter {
 };
 
 /// The curve of a scale at the multiples asked for, as far as there are Gaussians.
-ErrorCurve curveOf(const CutMeter& meter, const ScalePair<3>& pair, const ScaleClusters& clusters,
+ErrorCurve curveOf(const CutErrorMeter& meter, const ScalePair<3>& pair, const ScaleClusters& clusters,
                    const std::vector<double>& multiples) {
   ErrorCurve curve{pair.finer_scale + 1, {}};
-  const std::size_t most = clusters.mostExtra();
+  const std::size_t most = clusters.maxExtra();
   for (const double multiple : multiples) {
     const std::size_t extra =
         std::min(extraGaussians(PerCell{multiple}, curve.scale, pair.cells(), pair.finer.gaussianCount()), most);
@@ -88,11 +87,10 @@ std::vector<ErrorCurve> widestCurves(int scales, const CurveOptions& options) {
 }
 
 /// As few Gaussians beyond one per cell as reach the error, to half a percent; by bisection.
-std::size_t extraForError(const CutMeter& meter, const ScalePair<3>& pair, const ScaleClusters& clusters,
+std::size_t extraForError(const CutErrorMeter& meter, const ScalePair<3>& pair, const ScaleClusters& clusters,
                           double max_error, std::vector<NotReached>& not_reached) {
   const auto error = [&](std::size_t extra) { return meter.measure(pair, clusters.cut(extra)).q95; };
-  std::size_t low = 0, high = clusters.mostExtra();  // error(low) too large,
-                                                     // error(high) small enough
+  std::size_t low = 0, high = clusters.maxExtra();  // error(low) is too large, error(high) small enough
   const double least = error(high);
   if (least > max_error) {
     not_reached.push_back({pair.finer_scale + 1, least});
@@ -110,7 +108,7 @@ std::size_t extraForError(const CutMeter& meter, const ScalePair<3>& pair, const
 
 RefineResult<3> refineMeasured(GaussianMap<3> map, const Budget& budget, const RefineOptions& options) {
   const auto* max_error = std::get_if<MaxError>(&budget);
-  CutMeter meter(map, max_error != nullptr ? max_error->sampling : options.curves->sampling, options.threads);
+  CutErrorMeter meter(map, max_error != nullptr ? max_error->sampling : options.curves->sampling, options.threads);
   RefineResult<3> result;
   result.map = refineScales<3>(std::move(map), [&](const ScalePair<3>& pair, const std::vector<double>& areas) {
     const ScaleClusters clusters = ScaleClusters::under(pair, areas, options.merge_cost, options.threads);
@@ -141,12 +139,13 @@ RefineResult<3> refineToBytes(GaussianMap<3> map, const MaxBytes& budget, const 
                         return budget.size_of(trial);
                       }).multiple;
   if (!options.curves && last == fits && fits > 1.0) return trial;
-  double step = kBytePrecision;
-  for (double multiple = fits; multiple > 1.0;
-       multiple /= step, step *= step) {  // once, unless the curves are too much
+  double multiple = fits, step = kBytePrecision;
+  while (multiple > 1.0) {  // once, unless the curves take too many bytes
     RefineResult<3> best = refine<3>(std::move(trial.map), PerCell{multiple}, options);
     if (budget.size_of(best) <= budget.bytes) return best;
     trial.map = std::move(best.map);
+    multiple /= step;
+    step *= step;
   }
   RefineResult<3> one_per_cell = refine<3>(std::move(trial.map), PerCell{1.0}, options);
   requireRoom(budget.bytes, budget.size_of(one_per_cell));

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "gaussmap/mapping/refine.h"
-#include "map/areas.h"
 #include "map/inherit_occupancy.h"
+#include "map/occupied_areas.h"
 #include "mapping/scale_clusters.h"
 
 namespace gaussmap::detail {

@@ -5,10 +5,10 @@
 #include <map>
 #include <numeric>
 
-#include "clustering/undo_merges.h"
+#include "clustering/merge_gains.h"
 #include "core/parallel.h"
 #include "map/inherit_occupancy.h"
-#include "mapping/blur.h"
+#include "mapping/clustering_noise.h"
 
 namespace gaussmap::detail {
 namespace {
@@ -18,10 +18,10 @@ namespace {
 /// lidar) and less (office, building); the parts of different budgets would not be nested any longer. `first` = area of
 /// the first datum.
 template <int D>
-Dendrogram blurredDendrogram(std::vector<Gaussian<D>> data, std::vector<double>::const_iterator first,
-                             const Grid<D>& grid, MergeCost cost) {
+Dendrogram noisyDendrogram(std::vector<Gaussian<D>> data, std::vector<double>::const_iterator first,
+                           const Grid<D>& grid, MergeCost cost) {
   if (data.size() < 2) return {data.size(), {}};
-  blurForClustering(data, grid.side(0));
+  addClusteringNoise(data, grid.side(0));
   AgglomerateOptions options;
   options.cost = cost;
   return agglomerate<D>(data, {first, first + static_cast<std::ptrdiff_t>(data.size())}, options);
@@ -68,9 +68,8 @@ ScaleClusters ScaleClusters::under(const ScalePair<D>& pair, const std::vector<d
     const IndexRange under = pair.gaussiansUnder(cell);
     clusters.dendrograms_[cell].size = under.size();
     if (under.size() < 2) return;
-    clusters.dendrograms_[cell] =
-        blurredDendrogram<D>(pair.dataUnder(cell), areaOf(areas, under.first), pair.grid, cost);
-    clusters.gains_[cell] = gainsOfUndoing(clusters.dendrograms_[cell]);
+    clusters.dendrograms_[cell] = noisyDendrogram<D>(pair.dataUnder(cell), areaOf(areas, under.first), pair.grid, cost);
+    clusters.gains_[cell] = mergeGains(clusters.dendrograms_[cell]);
   });
   return clusters;
 }
@@ -86,18 +85,18 @@ ScaleClusters ScaleClusters::within(const MapScale<D>& scale, const Grid<D>& gri
     if (range.size() < 2 || (!keep.empty() && keep[cell])) return;
     std::vector<Gaussian<D>> data;
     for (std::size_t i = range.first; i < range.last; ++i) data.push_back(localGaussian(scale, grid, s, i));
-    clusters.dendrograms_[cell] = blurredDendrogram<D>(std::move(data), areaOf(areas, range.first), grid, cost);
-    clusters.gains_[cell] = gainsOfUndoing(clusters.dendrograms_[cell]);
+    clusters.dendrograms_[cell] = noisyDendrogram<D>(std::move(data), areaOf(areas, range.first), grid, cost);
+    clusters.gains_[cell] = mergeGains(clusters.dendrograms_[cell]);
   });
   return clusters;
 }
 
 ScaleClusters::ScaleClusters(std::vector<Dendrogram> dendrograms, int threads)
     : dendrograms_(std::move(dendrograms)), gains_(dendrograms_.size()), threads_(threads) {
-  for (std::size_t cell = 0; cell < gains_.size(); ++cell) gains_[cell] = gainsOfUndoing(dendrograms_[cell]);
+  for (std::size_t cell = 0; cell < gains_.size(); ++cell) gains_[cell] = mergeGains(dendrograms_[cell]);
 }
 
-std::size_t ScaleClusters::mostExtra() const {
+std::size_t ScaleClusters::maxExtra() const {
   std::size_t most = 0;
   for (const Dendrogram& dendrogram : dendrograms_) most += dendrogram.merges.size();
   return most;

@@ -62,8 +62,8 @@ class ScaleClusters {
   ScaleClusters(std::vector<Dendrogram> dendrograms, int threads);
 
   const std::vector<Dendrogram>& dendrograms() const { return dendrograms_; }
-  const std::vector<std::vector<double>>& gains() const { return gains_; }  ///< gainsOfUndoing() per cell
-  std::size_t mostExtra() const;  ///< how many clusters beyond one per cell the data allow
+  const std::vector<std::vector<double>>& gains() const { return gains_; }  ///< mergeGains() per cell
+  std::size_t maxExtra() const;  ///< how many clusters beyond one per cell the data allow
 
   /// `extra` clusters beyond one per cell, where they gain most.
   ClusterCut cut(std::size_t extra) const;

@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "map/areas.h"
 #include "map/coarsen.h"
 #include "map/inherit_occupancy.h"
 #include "map/map_scale_builder.h"
+#include "map/occupied_areas.h"
 #include "mapping/scale_clusters.h"
 
 namespace gaussmap::detail {
@@ -115,7 +115,7 @@ class CoarseScaleOfPart {
 template <int D>
 GaussianMap<D> updatePart(const GaussianMap<D>& old, const MomentGrid<D>& added, bool occupancy,
                           const RefineOptions& options,
-                          const std::function<std::size_t(int scale, std::size_t cells)>& mostGaussians) {
+                          const std::function<std::size_t(int scale, std::size_t cells)>& maxGaussians) {
   const Grid<D>& grid = old.grid();
   std::vector<MapScale<D>> scales;
   NewScale<D> finer = addMoments<D>(old, added, occupancy);
@@ -128,7 +128,7 @@ GaussianMap<D> updatePart(const GaussianMap<D>& old, const MomentGrid<D>& added,
     NewScale<D> under = underChanged<D>(finer, parents);
     MapScale<D> rebuilt = coarsen<D>(under.cells, grid, s - 1);
     const ScalePair<D> pair{under.cells, rebuilt, grid, s - 1};
-    const std::size_t most = mostGaussians(s, parents.changed.size()), taken = staying + pair.cells();
+    const std::size_t most = maxGaussians(s, parents.changed.size()), taken = staying + pair.cells();
     if (most > taken)
       setClusters(pair, ScaleClusters::under(pair, under.areas, options.merge_cost, options.threads).cut(most - taken),
                   options.threads);

@@ -14,11 +14,11 @@ namespace gaussmap::detail {
 /// exactly. Coarse cells with new points under them are rebuilt from all that is under them, by agglomeration as in
 /// refine(); all other cells stay as they are. With `occupancy`, finest cells keep their log-odds, new ones have
 /// kMaxOccupancy, and rebuilt coarse cells follow.
-/// `mostGaussians(scale, cells)` = how many Gaussians a coarse scale of the part may have if it has so many cells. The
+/// `maxGaussians(scale, cells)` = how many Gaussians a coarse scale of the part may have if it has so many cells. The
 /// rebuilt cells share what the other cells leave of them, at least one each.
 template <int D>
 GaussianMap<D> updatePart(const GaussianMap<D>& old, const MomentGrid<D>& added, bool occupancy,
                           const RefineOptions& options,
-                          const std::function<std::size_t(int scale, std::size_t cells)>& mostGaussians);
+                          const std::function<std::size_t(int scale, std::size_t cells)>& maxGaussians);
 
 }  // namespace gaussmap::detail

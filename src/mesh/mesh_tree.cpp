@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t kLeafSize = 4;
 constexpr int kBins = 16;
-constexpr std::size_t kMostTriangles = std::size_t{1} << 31;
+constexpr std::size_t kMaxTriangles = std::size_t{1} << 31;
 constexpr int kDeepestByCost = 64;  // below it halves of equal number: at most 32 levels more
 constexpr std::size_t kStack = 128;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -166,7 +166,7 @@ struct MeshTree::Builder {
 MeshTree::MeshTree(const TriangleMesh& mesh) {
   checkMesh(mesh);
   if (mesh.triangles.empty()) return;
-  if (mesh.triangles.size() > kMostTriangles) throw std::length_error("a tree takes at most 2^31 triangles");
+  if (mesh.triangles.size() > kMaxTriangles) throw std::length_error("a tree takes at most 2^31 triangles");
   Builder builder{*this, {}};
   builder.items.reserve(mesh.triangles.size());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {

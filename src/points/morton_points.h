@@ -122,9 +122,9 @@ inline Cube cubeOf(const PointsView& surface, const PointsView& queries) {
 
 /// Returns a cube without outliers if it is much smaller than `all`, else `all`. The size of cells depends on the cube.
 inline Cube withoutStrays(const Cube& all, const PointsView& surface) {
-  constexpr std::size_t kMostSamples = 4096;
+  constexpr std::size_t kMaxSamples = 4096;
   std::array<std::vector<float>, 3> axes;
-  const std::size_t step = std::max<std::size_t>(1, surface.count / kMostSamples);
+  const std::size_t step = std::max<std::size_t>(1, surface.count / kMaxSamples);
   for (std::size_t i = 0; i < surface.count; i += step)
     if (isFinite(surface[i]))
       for (std::size_t axis = 0; axis < 3; ++axis) axes[axis].push_back(surface[i][axis]);

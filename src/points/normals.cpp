@@ -26,7 +26,7 @@ namespace {
 constexpr double kWorthAFinerBlock = 2.5;  // times min_points: with fewer points, a finer block rarely has enough
 constexpr std::size_t kParts = 64;         // parallel tasks per level
 constexpr std::size_t kGrain = 512;
-constexpr int kMostMinPoints = 1000;
+constexpr int kMaxMinPoints = 1000;
 
 /// The unfinished cells of one octree level, or of one task's share of it.
 struct OpenCells {
@@ -34,10 +34,10 @@ struct OpenCells {
   std::vector<Near> near;
 };
 
-class Descent {
+class OctreeDescent {
  public:
-  Descent(const SortedBlocks& surface, const SortedBlocks& queries, const Cube& cube, const NormalsView& normals,
-          const PointNormalOptions& options)
+  OctreeDescent(const SortedBlocks& surface, const SortedBlocks& queries, const Cube& cube, const NormalsView& normals,
+                const PointNormalOptions& options)
       : surface_(surface), queries_(queries), normals_(normals), options_(options) {
     const double farthest = std::max(cube.low.cwiseAbs().maxCoeff(), (cube.low.array() + cube.side).abs().maxCoeff());
     rounding_ = std::pow(double(std::numeric_limits<float>::epsilon()) * farthest, 2);
@@ -87,7 +87,7 @@ class Descent {
   /// Collects blocks and their queries until a batch is full. Then fits the planes and writes the normals.
   class Writer {
    public:
-    explicit Writer(Descent& descent) : descent_(descent) {}
+    explicit Writer(OctreeDescent& descent) : descent_(descent) {}
     void add(const PlaneSums& sums, PointRange queries) {
       batch_.set(size_, sums);
       queries_[size_] = queries;
@@ -102,7 +102,7 @@ class Descent {
 
    private:
     PlaneBatch batch_;
-    Descent& descent_;
+    OctreeDescent& descent_;
     std::size_t size_ = 0;
     std::array<PointRange, PlaneBatch::kCapacity> queries_;
   };
@@ -205,8 +205,8 @@ class Descent {
 };
 
 void checkOptions(const PointNormalOptions& options, std::size_t points) {
-  require(options.min_points >= 3 && options.min_points <= kMostMinPoints, "min_points", options.min_points,
-          "must be 3 to " + std::to_string(kMostMinPoints));
+  require(options.min_points >= 3 && options.min_points <= kMaxMinPoints, "min_points", options.min_points,
+          "must be 3 to " + std::to_string(kMaxMinPoints));
   if (!options.viewpoint.allFinite()) throw std::invalid_argument("the viewpoint is not finite");
   if (points >= std::size_t{1} << 31)
     throw std::invalid_argument(std::to_string(points) + " points: at most 2^31 - 1 are possible");
@@ -217,8 +217,8 @@ std::size_t normalsWithin(const Cube& cube, const PointsView& surface, const Poi
                           const NormalsView& normals, const PointNormalOptions& options) {
   const SortedBlocks points(surface, cube, options.threads);
   if (surface.first == queries.first && surface.count == queries.count && surface.stride == queries.stride)
-    return Descent(points, points, cube, normals, options).run();
-  return Descent(points, SortedBlocks(queries, cube, options.threads), cube, normals, options).run();
+    return OctreeDescent(points, points, cube, normals, options).run();
+  return OctreeDescent(points, SortedBlocks(queries, cube, options.threads), cube, normals, options).run();
 }
 
 }  // namespace

@@ -44,9 +44,9 @@ void checkOptions(const SplitPointsOptions& options) {
   require(options.rounds >= 0, "rounds", options.rounds, "must not be negative");
 }
 
-class Splitter {
+class PointSplitter {
  public:
-  Splitter(const std::vector<Vector<3>>& points, const SplitPointsOptions& options) : options_(options) {
+  PointSplitter(const std::vector<Vector<3>>& points, const SplitPointsOptions& options) : options_(options) {
     items_.resize(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) items_[i] = {points[i], std::uint32_t(i)};
     nodes_.push_back(makeNode(0, std::uint32_t(points.size())));
@@ -218,7 +218,7 @@ PointParts movedToNearest(const Points& points, const PointParts& start, const S
 }
 
 /// Returns the smallest number of parts that keeps max_error, or max_parts parts if no number does.
-PointParts withinError(Splitter& splitter, const Points& points, const SplitPointsOptions& options) {
+PointParts withinError(PointSplitter& splitter, const Points& points, const SplitPointsOptions& options) {
   const auto make = [&](std::size_t count) { return partsOf(points, splitter.labels(count), count, options); };
   std::size_t too_few = 0, enough = 1;
   PointParts best = make(1);
@@ -266,7 +266,7 @@ PointParts splitPoints(const std::vector<Vector<3>>& points, const SplitPointsOp
   for (std::size_t i = 0; i < points.size(); ++i)
     if (!points[i].allFinite()) throw std::invalid_argument("point " + std::to_string(i) + " is not finite");
   if (points.empty()) return {};
-  Splitter splitter(points, options);
+  PointSplitter splitter(points, options);
   PointParts parts;
   if (options.max_error > 0.0) {
     parts = withinError(splitter, points, options);

@@ -6,8 +6,9 @@
 
 namespace gaussmap::detail {
 
-Descent descend(const std::function<NormalEquations(const Pose&)>& at, const Pose& start, const DescentLimits& limits) {
-  Descent here{start, at(start)};
+DescentResult descend(const std::function<NormalEquations(const Pose&)>& at, const Pose& start,
+                      const DescentLimits& limits) {
+  DescentResult here{start, at(start)};
   double damping = 1e-6;
   while (here.iterations < limits.max_iterations && here.equations.met > 0 && !here.converged) {
     ++here.iterations;

@@ -14,7 +14,7 @@ struct DescentLimits {
   double rotation;     ///< ... and turns less than this [rad]
 };
 
-struct Descent {
+struct DescentResult {
   Pose pose;
   NormalEquations equations;  ///< at `pose`
   int iterations = 0;
@@ -23,6 +23,7 @@ struct Descent {
 
 /// Minimises the cost by damped Gauss-Newton (Levenberg, Marquardt). A step that raises the cost is rejected and
 /// tried shorter. `at` gives the equations at a pose.
-Descent descend(const std::function<NormalEquations(const Pose&)>& at, const Pose& start, const DescentLimits& limits);
+DescentResult descend(const std::function<NormalEquations(const Pose&)>& at, const Pose& start,
+                      const DescentLimits& limits);
 
 }  // namespace gaussmap::detail

@@ -73,7 +73,7 @@ void judge(const NormalEquations& sums, double range, const RegistrationOptions&
   const Vector6& told = solver.eigenvalues();
   if (!(told[5] > 0.0)) return;  // all partners in the map fill their cells
   result.degenerate = !(told[0] > options.degenerate * told[5]);
-  result.weakest = solver.eigenvectors().col(0);
+  result.least_observable = solver.eigenvectors().col(0);
   const Vector6 variances = told.cwiseMax(1e-12 * told[5]).cwiseInverse();
   const Matrix6 covariance = solver.eigenvectors() * variances.asDiagonal() * solver.eigenvectors().transpose();
   result.covariance = unit.asDiagonal() * covariance * unit.asDiagonal();
@@ -100,7 +100,7 @@ RegistrationResult align(const GaussianMap<3>& source, const GaussianMap<3>& map
     const bool final = &step == &steps.back();
     const auto& scan = !final && map.grid().side(scale) > side ? coarse : fine;
     ScanOnMap on_map(scan, *near, options.kernel, options.threads);
-    const Descent down =
+    const DescentResult down =
         descend([&](const Pose& where) { return on_map.linearise(where); }, pose, limitsOf(step, final, options));
     pose = down.pose;
     last = down.equations;

@@ -18,8 +18,8 @@ using namespace detail;
 namespace {
 
 constexpr double kNoReturn = std::numeric_limits<double>::quiet_NaN();
-constexpr double kMostHeight = 0.5;  // of a planar laser's points, poses tilt a little [m]
-constexpr double kGap = 1.5;         // usual steps between beams, above which one is missing
+constexpr double kMaxHeight = 0.5;  // of a planar laser's points, poses tilt a little [m]
+constexpr double kGap = 1.5;        // usual steps between beams, above which one is missing
 
 struct Beam {
   double bearing;  // NaN: not known
@@ -162,7 +162,7 @@ LaserScan planarScan(const Scan& cloud, const PlanarScanOptions& options) {
     addSlice(scan, view.beams, options.step);
     return scan;
   }
-  if (view.highest - view.lowest > kMostHeight)
+  if (view.highest - view.lowest > kMaxHeight)
     throw std::invalid_argument("no scan of a planar laser: its heights in the map go from " + numberText(view.lowest) +
                                 " m to " + numberText(view.highest) + " m; take a slice of it");
   addSweep(scan, ordered(view.beams));

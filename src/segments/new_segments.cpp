@@ -6,7 +6,7 @@
 namespace gaussmap::detail {
 namespace {
 
-constexpr std::size_t kFewestToSplit = 4;  // beams
+constexpr std::size_t kMinToSplit = 4;  // beams
 
 /// Returns the best break point in the order of the beams. The order along a line would be wrong for a run that turns
 /// back on itself: it would mix the two arms.
@@ -47,7 +47,7 @@ LiveSegment segmentOf(const ScanBeams& beams, std::size_t first, std::size_t las
 void NewSegments::createFrom(const ScanBeams& beams, std::size_t first, std::size_t last, std::vector<int>& owners,
                              std::vector<int>& created) {
   const LiveSegment whole = segmentOf(beams, first, last, cell_);
-  if (last - first >= kFewestToSplit) {
+  if (last - first >= kMinToSplit) {
     const std::size_t cut = bestBreakOfBeams(beams, first, last);
     const SegmentGoals goals = whole.goals();
     const double vote =

@@ -8,7 +8,7 @@
 namespace gaussmap::detail {
 namespace {
 
-constexpr std::size_t kFewest = 3;      // minimum number of beams that show a direction ...
+constexpr std::size_t kMinBeams = 3;    // minimum number of beams that show a direction ...
 constexpr double kShortestPiece = 1.3;  // ... and minimum length of their piece, in tolerances
 
 }  // namespace
@@ -42,7 +42,7 @@ std::vector<Vector<2>> straightPieces(const std::vector<BeamRun>& runs, const st
   while (!open.empty()) {
     const BeamRun run = open.back();
     open.pop_back();
-    if (run.last - run.first < kFewest) continue;
+    if (run.last - run.first < kMinBeams) continue;
     const Vector<2> chord = hits[run.last - 1] - hits[run.first];
     const double length = chord.norm();
     // Finds the beam farthest from the chord, or from its first end if the chord is too short to have a direction.

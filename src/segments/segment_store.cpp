@@ -9,7 +9,7 @@ namespace gaussmap::detail {
 namespace {
 
 constexpr double kMany = 2.0;  // a pruned segment has at least this many rays through it per ray that ends on it ...
-constexpr double kFewestRays = 10.0;  // ... and at least this many rays through it
+constexpr double kMinRays = 10.0;  // ... and at least this many rays through it
 
 }  // namespace
 
@@ -66,7 +66,7 @@ std::size_t SegmentStore::prune() {
     if (!segments_[id].alive) continue;
     double crossed = 0.0;
     for (const SegmentCell& cell : segments_[id].evidence.row.cells()) crossed += cell.crossed;
-    if (crossed < kFewestRays || crossed < kMany * segments_[id].spread.beams()) continue;
+    if (crossed < kMinRays || crossed < kMany * segments_[id].spread.beams()) continue;
     remove(id);
     ++pruned;
   }

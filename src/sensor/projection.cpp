@@ -16,7 +16,7 @@ using namespace detail;
 namespace {
 
 constexpr double kRounding = 1e-7;  // more than an arc sine near 1 is wrong by when its argument is rounded [rad]
-constexpr double kMostPixels = 268435456.0;  // 2 GB of ranges
+constexpr double kMaxPixels = 268435456.0;  // 2 GB of ranges
 
 int rowOf(const SphericalProjection& projection, double elevation) {
   const auto& borders = projection.row_borders;
@@ -108,7 +108,7 @@ PixelBox pixelsIn(const PlanarProjection& projection, const Eigen::Vector3d& cen
 void checkSize(int rows, int columns) {
   require(rows >= 1, "rows", rows, "must be at least 1");
   require(columns >= 1, "columns", columns, "must be at least 1");
-  if (static_cast<double>(rows) * columns > kMostPixels)
+  if (static_cast<double>(rows) * columns > kMaxPixels)
     throw std::invalid_argument("an image of " + std::to_string(rows) + " x " + std::to_string(columns) +
                                 " pixels is too large: at most 2^28");
 }

@@ -117,8 +117,8 @@ vtkSmartPointer<vtkActor> ellipsoidActor(const std::vector<Glyph>& glyphs, const
 }
 
 vtkSmartPointer<vtkActor> centreActor(const std::vector<Glyph>& glyphs, const std::vector<Colour>& colours) {
-  constexpr std::size_t kMost = 60000;
-  const std::size_t step = (glyphs.size() + kMost - 1) / kMost;
+  constexpr std::size_t kMax = 60000;
+  const std::size_t step = (glyphs.size() + kMax - 1) / kMax;
   vtkNew<vtkPoints> centres;
   vtkNew<vtkCellArray> cells;
   std::vector<Colour> chosen;

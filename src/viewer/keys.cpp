@@ -2,22 +2,13 @@
 // What the keys of the window do.
 #include <algorithm>
 
+#include "viewer/key_help.h"
 #include "viewer/viewer_parts.h"
 
 namespace gaussmap {
 
 std::string Viewer::helpText() {
-  return "0..9, Up, Down  scale (0 = finest)\n"
-         "l               the map at its finest\n"
-         "+ -             size of the ellipsoids\n"
-         "c               colour: scale, height, normal, weight, occupancy, error\n"
-         "g               cells\n"
-         "p               cloud\n"
-         "h               hierarchy: scales lifted, children linked\n"
-         "t i r           from above, from the side, as at the start\n"
-         "F1 ?            this help\n"
-         "q Esc           quit\n"
-         "mouse           left turns, middle shifts, wheel zooms";
+  return detail::kKeyHelp;
 }
 
 bool Viewer::Parts::press(const std::string& key) {

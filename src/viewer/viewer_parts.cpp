@@ -21,7 +21,7 @@ using namespace detail;
 
 namespace {
 
-constexpr std::size_t kMostSmooth = 200000;  // Gaussians
+constexpr std::size_t kMaxSmooth = 200000;  // Gaussians
 
 Vector<3> centreOf(const Glyph& glyph) {
   return {double{glyph.centre[0]}, double{glyph.centre[1]}, double{glyph.centre[2]}};
@@ -40,10 +40,10 @@ Box<3> boxOf(const SegmentMap& map) {
 
 /// Makes a colour slightly brighter or darker, to distinguish the ellipsoids of one plane.
 Colour shadeOf(Colour colour, std::size_t index) {
-  constexpr double kMost = 0.14, kGoldenRatio = 0.6180339887498949;  // its multiples are spread evenly
+  constexpr double kMax = 0.14, kGoldenRatio = 0.6180339887498949;  // its multiples are spread evenly
   const double share = std::fmod(static_cast<double>(index) * kGoldenRatio, 1.0);
   for (std::uint8_t& channel : colour)
-    channel = static_cast<std::uint8_t>(std::min(255.0, channel * (1.0 + kMost * (2.0 * share - 1.0))));
+    channel = static_cast<std::uint8_t>(std::min(255.0, channel * (1.0 + kMax * (2.0 * share - 1.0))));
   return colour;
 }
 
@@ -55,7 +55,7 @@ std::size_t countOf(const GaussianMap<3>& map, const std::optional<int>& scale) 
 
 int scaleToShow(const GaussianMap<3>& map) {
   int scale = 0;
-  while (scale + 1 < map.scales() && map.gaussianCount(scale) > kMostSmooth) ++scale;
+  while (scale + 1 < map.scales() && map.gaussianCount(scale) > kMaxSmooth) ++scale;
   return scale;
 }
 

@@ -175,7 +175,7 @@ TEST_F(BudgetApps, RefuseOptionsOfTheOtherMethod) {
       options.insert(options.begin(), {command, input, "-o", own("x.gmap")});
       expectUsageError(word, options);
     };
-    refuse("--cost: for --method agglomerate only", {"--method", "insert", "--cost", "volume"});
+    refuse("--cost: only for --method agglomerate", {"--method", "insert", "--cost", "volume"});
     refuse("--cost", {"--cost", "area"});
   }
 }

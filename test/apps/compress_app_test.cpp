@@ -67,8 +67,8 @@ TEST_F(CompressApp, MakesAMapThatInfoCallsCompressed) {
   EXPECT_EQ(after["metadata"]["history"].back()["max_error"], 0.1);
   EXPECT_FALSE(after["metadata"].contains("error_curves"));  // they tell of whole scales
   const std::string text = succeed({"info", own("small.gmap")});
-  EXPECT_NE(text.find("takes no more scans"), std::string::npos) << text;
-  EXPECT_NE(text.find("finest at scale 1: "), std::string::npos) << text;
+  EXPECT_NE(text.find("accepts no more scans"), std::string::npos) << text;
+  EXPECT_NE(text.find("leaves of scale 1: "), std::string::npos) << text;
 }
 
 TEST_F(CompressApp, DeletesMoreTheLargerTheError) {

@@ -139,7 +139,7 @@ TEST_F(Faults, WithoutMemoryAreToldAndLeaveTheOldFiles) {
       ++refused;
       EXPECT_EQ(outcome.code, 1);
       EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-      EXPECT_TRUE(outcome.err.find("out of memory: take ") != std::string::npos ||
+      EXPECT_TRUE(outcome.err.find("out of memory: use ") != std::string::npos ||
                   outcome.err.find("try --threads 1") != std::string::npos ||
                   outcome.err.find("emory") != std::string::npos)
           << outcome.err;

@@ -17,14 +17,15 @@ TEST_F(Apps, FinishMakesASmallMapThatSaysThatItIsFinal) {
   EXPECT_EQ(info["final"], true);
   EXPECT_EQ(info["takes_scans"], false);
   EXPECT_EQ(info["metadata"]["history"].back()["command"], "finish");
-  EXPECT_NE(succeed({"info", own("final.gmap")}).find("final (takes no more scans): means within"), std::string::npos);
+  EXPECT_NE(succeed({"info", own("final.gmap")}).find("final (accepts no more scans): means within"),
+            std::string::npos);
   EXPECT_EQ(infoOf(scene("map.gmap"))["final"], false);
 }
 
 TEST_F(Apps, AFinishedMapIsNotFinishedAgainAndTakesNoScans) {
   succeed({"finish", scene("map.gmap"), "-o", own("final.gmap"), "--finest-scale", "1"});
   EXPECT_EQ(infoOf(own("final.gmap"))["scales"][0]["cells"], 0);
-  expectDataError("final already", {"finish", own("final.gmap"), "-o", own("x.gmap")});
+  expectDataError("already final", {"finish", own("final.gmap"), "-o", own("x.gmap")});
   expectDataError("takes no more scans", {"pcd2map", scene("scans"), "--update", own("final.gmap")});
   expectUsageError("--finest-scale", {"finish", scene("map.gmap"), "-o", own("x.gmap"), "--finest-scale", "3"});
   expectUsageError("destroy the input", {"finish", scene("map.gmap"), "-o", scene("map.gmap"), "--force"});

@@ -194,7 +194,7 @@ TEST_F(OnlineApp, SaysWhatIsWrongWithTheOptionsOfRestore) {
   const std::string map = scene("map.gmap"), removed = scene("removed.pcd"), out = own("x.gmap");
   expectUsageError("--output", {"restore", map, removed});
   expectUsageError("removed", {"restore", map, "-o", out});
-  expectUsageError("low corner first", {"restore", map, removed, "-o", out, "--box", "1", "0", "0", "0", "9", "9"});
+  expectUsageError("first corner", {"restore", map, removed, "-o", out, "--box", "1", "0", "0", "0", "9", "9"});
   expectUsageError("--box", {"restore", map, removed, "-o", out, "--box", "0", "0", "0", "9", "9"});
   expectUsageError("not in the range", {"restore", map, removed, "-o", out, "--box", "0", "0", "nan", "9", "9", "9"});
   expectUsageError("destroy the input", {"restore", map, removed, "-o", map, "--force"});
@@ -246,8 +246,8 @@ TEST_F(OnlineApp, NeverWritesOneFileOverAnother) {
 
 TEST_F(OnlineApp, WritesNothingWithoutPoints) {
   const std::string none = directory_.write("none.pcd", xyzHeader(1, "ascii") + "nan nan nan\n").string();
-  expectDataError("none is usable", {"pcd2map", "--online", none, "-o", own("x.gmap"), "--stats", own("s.csv"),
-                                     "--removed", own("r.pcd")});
+  expectDataError("points is usable", {"pcd2map", "--online", none, "-o", own("x.gmap"), "--stats", own("s.csv"),
+                                       "--removed", own("r.pcd")});
 }
 
 TEST_F(OnlineApp, LeavesOutWhatIsTooFar) {

@@ -73,7 +73,7 @@ TEST_F(RegisterApp, SaysWhatIsWrong) {
                    {"register", scan(0), world("map.gmap"), "--guess", "0", "0", "0", "0", "0", "0", "0"});
   expectDataError("none.gmap", {"register", scan(0), own("none.gmap")});
   expectDataError("none.pcd", {"register", own("none.pcd"), world("map.gmap")});
-  expectDataError("meets nothing",
+  expectDataError("no part of it lies on the map",
                   {"register", scan(0), world("map.gmap"), "--guess", "9000", "0", "0", "0", "0", "0", "1"});
   directory_.write("there.tum", "mine");
   expectUsageError("there.tum", {"register", scan(0), world("map.gmap"), "--tum", own("there.tum")});

@@ -42,7 +42,7 @@ inline std::vector<NamedCloud> loadClouds(const std::vector<std::string>& paths)
 
 /// Least processor time of some runs [s]: other programs on the machine do not count. Of several threads: their sum.
 template <typename Run>
-double leastSeconds(int runs, const Run& run) {
+double minSeconds(int runs, const Run& run) {
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < runs; ++i) {
     const double start = processorSeconds();

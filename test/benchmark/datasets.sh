@@ -1,16 +1,17 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# The main job on real data: every dataset with and without refinement; sizes, times, distances to its own merged cloud
-# at every scale, the check of weights, and the finest scale against a brute-force reference.
+# Runs the main job on real data. Builds a map of every dataset with and without refinement, and prints a table: sizes,
+# and at every scale the distances to the merged cloud of the dataset. Stops if the weights of a scale do not add up to
+# the accepted points. Then prints the build times and compares the finest scales with a brute-force reference.
 # Usage: test/benchmark/datasets.sh GAUSSMAP BENCHMARK DATA > table.md
-#   GAUSSMAP  the command line, BENCHMARK the gaussmap_benchmark program, DATA a folder with the datasets
+#   GAUSSMAP: the command line; BENCHMARK: the gaussmap_benchmark program; DATA: a folder with the datasets
 set -euo pipefail
-(($# == 3)) || { sed -n '3,6p' "$0" >&2; exit 2; }
+(($# == 3)) || { sed -n '3,7p' "$0" >&2; exit 2; }
 gaussmap=$1 benchmark=$2 data=$3
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# name, options of pcd2map (the reading options are hausdorff's and the reference's too), files
+# name | options of pcd2map | options for reading the scans (also for hausdorff and the reference) | files
 datasets=(
   "kitti_6scans|--resolution 0.1||kitti_6scans"
   "mulran_kaist03_21scans|--resolution 0.1||mulran_kaist03_21scans"
@@ -54,6 +55,6 @@ PY
   printf '%s: %s; budget 3 built in %.2f s\n' "$name" "$(cat "$work/reference.txt")" "$(field "$work/build.json" 'd["seconds"]')" >>"$work/checks.txt"
 done
 echo
-echo "The finest scale against a brute-force reference (every cell found, counts equal, largest differences in cell sides):"
+echo "The finest scale compared with a brute-force reference (all cells found, equal counts, largest differences in cell sides):"
 echo
 sed 's/^/- /' "$work/checks.txt"

@@ -108,7 +108,7 @@ class Comparison {
     filter.setInputCloud(input.cloud);
     FilterRow row;
     row.filter = name;
-    row.seconds = leastSeconds(runs_, [&] { filter.filter(kept); });
+    row.seconds = minSeconds(runs_, [&] { filter.filter(kept); });
     const Points kept_points = finitePoints(kept);
     row.kept = kept_points.size();
     row.to_kept = distancesOf(points, kept_points);

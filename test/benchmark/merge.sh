@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Maps that meet and shrink.
-# merge: two halves of a drive, the second one built in a frame that is moved by a known pose, merged with that pose;
-# beside the map of all scans in one frame with the same number of Gaussians: how far samples of each scale lie from
-# the points of the scans, and wall times of the whole commands (the shortest of three).
-# simplify: a map of twenty Gaussians a coarse cell brought down to a half, a quarter, a tenth, beside refine to that
-# number: how far samples of the scale lie from the reference.
+# Measures merged and simplified maps.
+# merge: builds maps of the two halves of a drive, the second half in a frame that is moved by a known pose, and merges
+# them with that pose. Compares the result with a map of all scans in one frame with the same number of Gaussians: the
+# distances from samples of each scale to the points of the scans, and the wall times of the commands (best of three).
+# simplify: reduces a map with twenty Gaussians per coarse cell to a half, a quarter and a tenth of its Gaussians.
+# Compares the result with refine to the same number: the distances from samples of the scale to the reference.
 # Usage: test/benchmark/merge.sh GAUSSMAP merge SCANS TRAJECTORY.tum
 #        test/benchmark/merge.sh GAUSSMAP simplify SCANS REFERENCE   (REFERENCE: a cloud, a mesh, or the scans)
 set -euo pipefail
@@ -17,12 +17,12 @@ trap 'rm -rf "$work"' EXIT
 gaussians() { "$gaussmap" info "$1" | awk -v s="$2" '$1 == s { print $4 }'; }  # map, scale
 # map, scale, reference: the 95 % quantile and mean of the distances from samples of the scale
 distances() { "$gaussmap" hausdorff "$1" "$3" --scale "$2" | awk '$2 == "all" && /map->ref/ { print $6, $7 }'; }
-row() {  # words..., then the pair to be looked at, then the pair that it is compared with
+row() {  # title, pair of values, pair of values to compare with
   awk -v w="$1" -v a="$2" -v b="$3" 'BEGIN { split(a, p, " "); split(b, q, " ");
     printf "%-44s %8s %8s   %8s %8s   %+6.1f %% %+6.1f %%\n", w, p[1], p[2], q[1], q[2],
            100 * (p[1] / q[1] - 1), 100 * (p[2] / q[2] - 1) }'
 }
-shortest() {  # command...: of three times
+shortest() {  # command...: the shortest time of three runs
   local TIMEFORMAT=%R
   for _ in 1 2 3; do { time "$@" >/dev/null; } 2>&1; done | sort -n | head -1
 }
@@ -30,14 +30,14 @@ shortest() {  # command...: of three times
 if [[ $what == merge ]]; then
   mapfile -t files < <(find "$scans" -maxdepth 1 -name '*.pcd' | sort -V)
   half=$((${#files[@]} / 2))
-  pose="12.345 -7.89 1.23 0.02 -0.03 0.35 0.936055020"  # of the second half's frame in the first one's
+  pose="12.345 -7.89 1.23 0.02 -0.03 0.35 0.936055020"  # pose of the second frame in the first frame
   awk -v pose="$pose" -v skip=$half 'BEGIN { split(pose, t, " ") }
-    function turn(x, y, z, w, px, py, pz) {  # by a quaternion, to v
+    function turn(x, y, z, w, px, py, pz) {  # rotates p by a quaternion; the result is v
       v[1] = (1-2*(y*y+z*z))*px + 2*(x*y-z*w)*py + 2*(x*z+y*w)*pz
       v[2] = 2*(x*y+z*w)*px + (1-2*(x*x+z*z))*py + 2*(y*z-x*w)*pz
       v[3] = 2*(x*z-y*w)*px + 2*(y*z+x*w)*py + (1-2*(x*x+y*y))*pz }
     /^#/ || NF == 0 || ++n <= skip { next }
-    { x = -t[4]; y = -t[5]; z = -t[6]; w = t[7]  # back
+    { x = -t[4]; y = -t[5]; z = -t[6]; w = t[7]  # the inverse rotation
       turn(x, y, z, w, $2 - t[1], $3 - t[2], $4 - t[3])
       printf "%s %.12g %.12g %.12g %.12g %.12g %.12g %.12g\n", $1, v[1], v[2], v[3],
              w*$5 + x*$8 + y*$7 - z*$6, w*$6 - x*$7 + y*$8 + z*$5,
@@ -75,6 +75,6 @@ elif [[ $what == simplify ]]; then
     done
   done
 else
-  echo "merge or simplify, not '$what'" >&2
+  echo "test/benchmark/merge.sh: expected merge or simplify, found '$what'" >&2
   exit 2
 fi

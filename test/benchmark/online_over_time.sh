@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# The experiments of Yguel et al. 2009, sec. 6: a map on line after the first N scans, with and without refinement; how
-# far samples of each scale lie from the reference. Cells of RESOLUTION, 10 and 100 times that.
+# Repeats the experiments of Yguel et al. 2009, sec. 6. Builds an on-line map of the first N scans, with and without
+# refinement, and measures the distances from samples of each scale to the reference. The cell sides are RESOLUTION, 10
+# times and 100 times that.
 # Usage: online_over_time.sh GAUSSMAP SCANS REFERENCE RESOLUTION N... (REFERENCE: a cloud, a mesh, or the scans)
 set -euo pipefail
 (($# >= 5)) || { sed -n "s|^# Usage: |usage: |p" "$0" >&2; exit 2; }

@@ -14,7 +14,7 @@
 #include "gaussmap/mapping/build.h"
 #include "gaussmap/mapping/refine.h"
 #include "map/coarsen.h"
-#include "mapping/blur.h"
+#include "mapping/clustering_noise.h"
 #include "refinement_data.h"
 #include "scalar_agglomerate.h"
 #include "subcommands.h"
@@ -52,7 +52,7 @@ std::vector<CellData> dataOf(const GaussianMap<3>& map, int coarse) {
   std::vector<CellData> cells(map.cellCount(coarse));
   for (std::size_t cell = 0; cell < cells.size(); ++cell) {
     gatherUnder<3>(map.scale(coarse - 1), map.grid(), coarse - 1, map.childCells(cell, coarse), cells[cell].gaussians);
-    blurForClustering(cells[cell].gaussians, map.grid().side(0));
+    addClusteringNoise(cells[cell].gaussians, map.grid().side(0));
     const IndexRange under = map.gaussiansUnder(cell, coarse);
     for (std::size_t i = under.first; i < under.last; ++i) cells[cell].areas.push_back(areas[i]);
   }

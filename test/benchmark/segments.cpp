@@ -22,7 +22,7 @@ using namespace detail;
 
 namespace {
 
-constexpr std::size_t kMostSegments = 500;
+constexpr std::size_t kMaxSegments = 500;
 constexpr double kRangeNoise = 0.02, kPositionNoise = 0.02;  // of the simulated plan [m]
 constexpr int kRuns = 5;                                     // of which the fastest counts
 
@@ -62,7 +62,7 @@ void holdOut(const Scans& scans) {
     std::fflush(stdout);
   };
   const SegmentMap ours = fitMap(even, policy(EvidencePolicy::MomentCells));
-  const std::size_t count = std::min(ours.segments.size(), kMostSegments);
+  const std::size_t count = std::min(ours.segments.size(), kMaxSegments);
   row("moments", ours);
   row("particles", fitMap(even, policy(EvidencePolicy::ParticleSets)));
   row("the paper, literal", fitMap(even, leal2000(), std::make_shared<ViewpointInvariantUtility>()));
@@ -107,7 +107,7 @@ void plan(double position_noise, int seeds) {
   row("particles", true,
       [](const Scans& scans, std::uint64_t seed) { return fitMap(scans, policy(EvidencePolicy::ParticleSets, seed)); });
   row("iterative end-point fit", false,
-      [](const Scans& scans, std::uint64_t) { return endPointFit(scans, kMostSegments); });
+      [](const Scans& scans, std::uint64_t) { return endPointFit(scans, kMaxSegments); });
   std::printf("\n");
 }
 
@@ -120,7 +120,7 @@ void speed(const char* name, const Scans& scans, Table& table) {
   double baseline = 1e300;
   for (int run = 0; run < kRuns; ++run) {
     const double start = processorSeconds();
-    endPointFit(scans, kMostSegments);
+    endPointFit(scans, kMaxSegments);
     baseline = std::min(baseline, processorSeconds() - start);
   }
   std::printf(

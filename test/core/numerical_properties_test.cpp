@@ -10,6 +10,7 @@
 
 #include "gaussmap/core/cell_moments.h"
 #include "gaussmap/core/gaussian.h"
+#include "gaussmap/core/pose.h"
 #include "gaussmap/editing/simplify.h"
 #include "gaussmap/editing/transform_map.h"
 #include "gaussmap/mapping/build.h"
@@ -35,15 +36,16 @@ double logUniform(Random& random, double low, double high) {
   return low * std::exp(random.uniform() * std::log(high / low));
 }
 
+Pose::Rotation randomQuaternion(Random& random) {
+  return Pose::Rotation(random.normal(), random.normal(), random.normal(), random.normal()).normalized();
+}
+
 template <int D>
 Matrix<D> randomRotation(Random& random) {
-  if constexpr (D == 2) {
+  if constexpr (D == 2)
     return Eigen::Rotation2Dd(6.283 * random.uniform()).toRotationMatrix();
-  } else {
-    return Eigen::Quaterniond(random.normal(), random.normal(), random.normal(), random.normal())
-        .normalized()
-        .toRotationMatrix();
-  }
+  else
+    return randomQuaternion(random).toRotationMatrix();
 }
 
 /// Symmetric to the last bit, as the library makes them.
@@ -111,7 +113,8 @@ void expectGaussiansKeepTheirProperties() {
     }
     not_zero += !(klDivergence<D>(gaussian, gaussian) <= 1e-9);
     // A finished map's numbers.
-    const Gaussian<D> kept = restore<D>(quantise<D>(gaussian, 0.005), 0.005, std::numeric_limits<double>::infinity());
+    const Gaussian<D> kept =
+        dequantise<D>(quantise<D>(gaussian, 0.005), 0.005, std::numeric_limits<double>::infinity());
     indefinite += !isPositiveDefinite<D>(kept.cov);
     const Vector<D> direction = Vector<D>::Unit(static_cast<int>(random.below(D)));
     const double ratio = std::sqrt(direction.dot(kept.cov * direction) / direction.dot(gaussian.cov * direction));
@@ -207,11 +210,12 @@ TEST(NumericalProperties, HoldForMapsThatAreRefinedMovedAndThinned) {
   Random random(5);
   GaussianMapOctree map = refine<3>(build<3>(test::randomCloud<3>(points, 6), {0.05, 5, 3, 1e-4})).map;
   for (int round = 0; round < 4; ++round) {
-    RigidMotion<3> motion;
-    motion.rotation = randomRotation<3>(random);
+    Pose motion;
+    motion.rotation = randomQuaternion(random);
     motion.translation = {100.0 * random.normal(), 1e4 * random.normal(), 1e6 * random.normal()};
-    if (round % 2 == 1) motion.covariance = 1e-6 * PoseCovariance<3>::Identity();
-    map = transformMap<3>(map, motion);
+    TransformOptions options;
+    if (round % 2 == 1) options.covariance = 1e-6 * PoseCovariance::Identity();
+    map = transformMap<3>(map, motion, options);
     if (round == 2) map = simplify<3>(map, PerCell{2.0}).map;
     for (int s = 0; s < map.scales(); ++s) {
       std::int64_t indefinite = 0;

@@ -55,7 +55,7 @@ TEST(Compress, LeavesOneGaussianOfAPlane) {
   EXPECT_EQ(small.gaussianCount(2), 1u);
   EXPECT_TRUE(test::sameGaussian<3>(small.localGaussian(0, 2), map.localGaussian(0, 2)));
   EXPECT_TRUE(small.isCompressed());
-  EXPECT_FALSE(small.canGrow());
+  EXPECT_FALSE(small.acceptsScans());
   EXPECT_FALSE(small.empty());
   EXPECT_EQ(small.weight(2), 40000.0);
   EXPECT_EQ(small.weight(0), 0.0);
@@ -113,7 +113,7 @@ TEST(Compress, DeletesNothingForATinyError) {
     const GaussianMapOctree same = compress(map, max_error);
     expectSameMap<3>(same, map);
     EXPECT_FALSE(same.isCompressed());
-    EXPECT_TRUE(same.canGrow());
+    EXPECT_TRUE(same.acceptsScans());
   }
 }
 

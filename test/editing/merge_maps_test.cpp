@@ -57,7 +57,7 @@ TEST(MergeMaps, GivesTheFinestScaleOfAllPointsForRefinedMapsToo) {
   EXPECT_TRUE(sameFinest<3>(mergeMaps<3>(mergeMaps<3>(a, b), c), whole));
   EXPECT_TRUE(sameFinest<3>(mergeMaps<3>(a, mergeMaps<3>(b, c)), whole));
   EXPECT_TRUE(sameFinest<3>(mergeMaps<3>(mergeMaps<3>(c, a), b), whole));
-  EXPECT_TRUE(mergeMaps<3>(a, b).canGrow());
+  EXPECT_TRUE(mergeMaps<3>(a, b).acceptsScans());
 }
 
 TEST(MergeMaps, GivesTheMapOfAllScansForAnyDealOfSimulatedScans) {
@@ -180,7 +180,7 @@ TEST(MergeMaps, MatchesTheMomentsOfGaussiansThatMeetInAFinestCell) {
     EXPECT_NEAR(one.cov(0, 0), 4e-4, 1e-15);
     EXPECT_NEAR(one.cov(1, 1), 1e-4, 1e-15);
   }
-  EXPECT_FALSE(merged.canGrow());
+  EXPECT_FALSE(merged.acceptsScans());
 }
 
 TEST(MergeMaps, KeepsAsManyGaussiansInAFinestCellAsTheMapWithMoreHas) {
@@ -199,11 +199,11 @@ TEST(MergeMaps, MergesMomentsWithGaussiansAsGaussians) {
   const MapOptions grid = smallGrid<3>();
   const std::vector<Vector<3>> points = randomCloud<3>(4000, 8);
   const GaussianMap<3> a = refinedMap<3>(points, grid);
-  RigidMotion<3> motion;
+  Pose motion;
   motion.translation = {0.03, 0.01, -0.02};
   const GaussianMap<3> b = transformMap<3>(refinedMap<3>(randomCloud<3>(4000, 9), grid), motion);
   const GaussianMap<3> merged = mergeMaps<3>(a, b), other_way = mergeMaps<3>(b, a);
-  EXPECT_FALSE(merged.canGrow());
+  EXPECT_FALSE(merged.acceptsScans());
   expectMomentMatches<3>(merged);
   for (int s = 0; s < 3; ++s)
     expectSameMatch<3>(matchOfScale<3>(merged, s), merge<3>({matchOfScale<3>(a, s), matchOfScale<3>(b, s)}));
@@ -235,8 +235,8 @@ TEST(MergeMaps, AddsLogOddsWithinTheirBounds) {
 }
 
 TEST(MergeMaps, CombinesLogOddsOfMapsThatHoldGaussiansToo) {
-  RigidMotion<2> motion;
-  motion.translation = {0.0, 0.01};
+  Pose motion;
+  motion.translation = {0.0, 0.01, 0.0};
   const GaussianMap<2> moved = transformMap<2>(oneCell(0.0, 1.0f), motion);
   const GaussianMap<2> merged = mergeMaps<2>(moved, oneCell(0.0, 2.5f));
   ASSERT_EQ(merged.gaussianCount(0), 1u);

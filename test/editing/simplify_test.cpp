@@ -25,7 +25,7 @@ TEST(Simplify, LeavesAsManyGaussiansAsAskedFor) {
   for (const double budget : {2.5, 1.7, 1.0}) {
     const GaussianMap<3> simple = simplify<3>(map, PerCell{budget}).map;
     EXPECT_TRUE(sameFinest<3>(simple, map));
-    EXPECT_TRUE(simple.canGrow());
+    EXPECT_TRUE(simple.acceptsScans());
     for (int s = 1; s < 3; ++s) {
       EXPECT_EQ(simple.gaussianCount(s), static_cast<std::size_t>(std::floor(budget * double(map.cellCount(s)))));
       EXPECT_EQ(simple.weight(s), map.weight(s));
@@ -91,7 +91,7 @@ TEST(Simplify, NeedsNoFinerScale) {
 }
 
 TEST(Simplify, MergesGaussiansThatShareAFinestCell) {
-  RigidMotion<3> motion;
+  Pose motion;
   motion.translation = {0.04, 0.03, 0.05};
   GaussianMap<3> map = transformMap<3>(build<3>(randomCloud<3>(9000, 5), smallGrid<3>()), motion);
   map = withOccupancy<3>(map, std::vector<float>(map.gaussianCount(0), 1.5f));

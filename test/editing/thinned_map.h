@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "editing/thin_map.h"
+#include "editing/keep_cells.h"
 
 namespace gaussmap::test {
 using namespace detail;
@@ -22,7 +22,7 @@ GaussianMap<D> thinned(const GaussianMap<D>& map) {
     for (std::size_t cell = 0; cell < kept.size(); ++cell)
       finer.insert(finer.end(), map.childCells(cell, s).size(), kept[cell] && cell % nth != 0);
   }
-  return thinMap(map, keep);
+  return keepCells(map, keep);
 }
 
 }  // namespace gaussmap::test

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <tuple>
 
@@ -19,15 +20,15 @@ using namespace detail;
 
 namespace {
 
-RigidMotion<3> motion3(const Vector<3>& translation = {12.34, -5.6, 0.78}) {
+Pose motion3(const Vector<3>& translation = {12.34, -5.6, 0.78}) {
   const Eigen::Vector3d axis = Eigen::Vector3d(0.3, -0.5, 0.8).normalized();
-  return {Eigen::AngleAxisd(0.7, axis).toRotationMatrix(), translation, std::nullopt};
+  return {translation, Pose::Rotation(Eigen::AngleAxisd(0.7, axis))};
 }
-RigidMotion<2> motion2(double angle = 0.7, const Vector<2>& translation = {12.34, -5.6}) {
-  return {Eigen::Rotation2Dd(angle).toRotationMatrix(), translation, std::nullopt};
+Pose motion2(double angle = 0.7, const Vector<2>& translation = {12.34, -5.6}) {
+  return {{translation.x(), translation.y(), 0.0}, Pose::Rotation(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()))};
 }
 template <int D>
-RigidMotion<D> someMotion() {
+Pose someMotion() {
   if constexpr (D == 2) return motion2();
   if constexpr (D == 3) return motion3();
 }
@@ -62,7 +63,7 @@ void expectSameGaussians(const GaussianMap<D>& a, const GaussianMap<D>& b, int s
 template <int D>
 void expectThereAndBack() {
   const GaussianMap<D> map = build<D>(randomCloud<D>(8000, 1), smallGrid<D>());
-  const RigidMotion<D> motion = someMotion<D>();
+  const Pose motion = someMotion<D>();
   const GaussianMap<D> there = transformMap<D>(map, motion), back = transformMap<D>(there, motion.inverse());
   for (int s = 0; s < 3; ++s) expectSameGaussians<D>(map, back, s, 1e-5);
   // At the finest scale for a refined map too.
@@ -77,23 +78,24 @@ TEST(TransformMap, ThereAndBackGivesEveryMeanAndWeight) {
 
 TEST(TransformMap, ThereAndBackHoldsFarFromTheOrigin) {
   const GaussianMap<3> map = build<3>(shifted<3>(randomCloud<3>(2000, 1), {4e6, -3e6, 5e6}), smallGrid<3>());
-  const RigidMotion<3> motion = motion3({-4e6, 3e6, 1e6});
+  const Pose motion = motion3({-4e6, 3e6, 1e6});
   expectSameGaussians<3>(map, transformMap<3>(transformMap<3>(map, motion), motion.inverse()), 0, 1e-5);
 }
 
 TEST(TransformMap, MovesTheMatchOfEveryScaleAndKeepsItsWeight) {
   const GaussianMap<3> map = refinedMap<3>(randomCloud<3>(8000, 3), smallGrid<3>());
-  const RigidMotion<3> motion = motion3();
+  const Pose motion = motion3();
   const GaussianMap<3> moved = transformMap<3>(map, motion);
   for (int s = 0; s < 3; ++s) {
     Gaussian<3> expected = matchOfScale<3>(map, s);
-    expected.mean = motion.rotation * expected.mean + motion.translation;
-    expected.cov = motion.rotation * expected.cov * motion.rotation.transpose();
+    const Eigen::Matrix3d rotation = motion.rotation.toRotationMatrix();
+    expected.mean = motion * expected.mean;
+    expected.cov = rotation * expected.cov * rotation.transpose();
     expectSameMatch<3>(matchOfScale<3>(moved, s), expected);
     EXPECT_EQ(moved.gaussianCount(s), std::max(map.gaussianCount(s), moved.cellCount(s)));
   }
   EXPECT_EQ(moved.gaussianCount(0), map.gaussianCount(0));
-  EXPECT_FALSE(moved.canGrow());
+  EXPECT_FALSE(moved.acceptsScans());
   expectMomentMatches<3>(moved);
 }
 
@@ -130,11 +132,12 @@ TEST(TransformMap, GivesTheSameMapForTheIdentity) {
 TEST(TransformMap, WidensCovariancesAsThePoseIsUncertain) {
   // At 10 m from the origin 0.01 rad are 0.1 m across; the translation is known to 0.02 m along x.
   const GaussianMap<2> map = build<2>({{10.05, 0.05}}, smallGrid<2>());
-  RigidMotion<2> motion;
-  motion.covariance = PoseCovariance<2>::Zero();
-  (*motion.covariance)(0, 0) = 4e-4;
-  (*motion.covariance)(2, 2) = 1e-4;
-  const Matrix<2> before = map.gaussian(0, 0).cov, after = transformMap<2>(map, motion).gaussian(0, 0).cov;
+  TransformOptions options;
+  options.covariance = PoseCovariance::Zero();
+  (*options.covariance)(0, 0) = 4e-4;
+  (*options.covariance)(5, 5) = 1e-4;
+  options.covariance->diagonal().segment<3>(2).setConstant(0.01);  // z and rotations about x and y: not in the plane
+  const Matrix<2> before = map.gaussian(0, 0).cov, after = transformMap<2>(map, {}, options).gaussian(0, 0).cov;
   EXPECT_NEAR(after(0, 0) - before(0, 0), 4e-4 + 1e-4 * 0.05 * 0.05, 1e-9);
   EXPECT_NEAR(after(1, 1) - before(1, 1), 1e-4 * 10.05 * 10.05, 1e-7);
   EXPECT_NEAR(after(0, 1) - before(0, 1), -1e-4 * 10.05 * 0.05, 1e-8);
@@ -143,12 +146,12 @@ TEST(TransformMap, WidensCovariancesAsThePoseIsUncertain) {
 /// What errors of R and t, drawn at random, do to a point.
 TEST(TransformMap, WidensCovariancesAsDrawnErrorsDo) {
   const GaussianMap<3> map = build<3>({{7.05, -3.05, 2.05}}, smallGrid<3>());
-  RigidMotion<3> motion = motion3();
+  const Pose motion = motion3();
   Random random(5);
   Eigen::Matrix<double, 6, 6> factor;
   for (Eigen::Index i = 0; i < 36; ++i) factor(i / 6, i % 6) = 0.002 * random.normal();
-  motion.covariance = factor * factor.transpose();
-  const Vector<3> point = map.gaussian(0, 0).mean, mean = motion.rotation * point + motion.translation;
+  const PoseCovariance covariance = factor * factor.transpose();
+  const Vector<3> point = map.gaussian(0, 0).mean, mean = motion * point;
   Matrix<3> drawn = Matrix<3>::Zero(), drawn_back = drawn;
   constexpr int kDraws = 40000;
   for (int draw = 0; draw < kDraws; ++draw) {
@@ -157,27 +160,38 @@ TEST(TransformMap, WidensCovariancesAsDrawnErrorsDo) {
     const Eigen::Matrix<double, 6, 1> error = factor * z;
     const Eigen::Vector3d turn = error.tail<3>();
     const Eigen::Matrix3d rotation =
-        Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix() * Eigen::Matrix3d(motion.rotation);
+        Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix() * motion.rotation.toRotationMatrix();
     const Eigen::Vector3d translation = motion.translation + error.head<3>();
     const Vector<3> off = rotation * point + translation - mean;
     drawn += off * off.transpose() / kDraws;
     const Vector<3> off_back = rotation.transpose() * (mean - translation) - point;
     drawn_back += off_back * off_back.transpose() / kDraws;
   }
-  const auto widening = [](const GaussianMap<3>& from, const RigidMotion<3>& by) {
-    RigidMotion<3> exact = by;
-    exact.covariance.reset();
-    return Matrix<3>(transformMap<3>(from, by).gaussian(0, 0).cov - transformMap<3>(from, exact).gaussian(0, 0).cov);
+  const auto widening = [](const GaussianMap<3>& from, const Pose& by, const PoseCovariance& known) {
+    TransformOptions options;
+    options.covariance = known;
+    return Matrix<3>(transformMap<3>(from, by, options).gaussian(0, 0).cov -
+                     transformMap<3>(from, by).gaussian(0, 0).cov);
   };
-  EXPECT_LT((widening(map, motion) - drawn).norm(), 0.03 * drawn.norm());
-  RigidMotion<3> there = motion;
-  there.covariance.reset();
-  EXPECT_LT((widening(transformMap<3>(map, there), motion.inverse()) - drawn_back).norm(), 0.03 * drawn_back.norm());
+  EXPECT_LT((widening(map, motion, covariance) - drawn).norm(), 0.03 * drawn.norm());
+  const PoseCovariance back = covarianceOfInverse(motion, covariance);
+  EXPECT_LT((widening(transformMap<3>(map, motion), motion.inverse(), back) - drawn_back).norm(),
+            0.03 * drawn_back.norm());
+}
+
+TEST(TransformMap, TakesTheCovarianceOfAnInverseBackToItself) {
+  Random random(6);
+  Eigen::Matrix<double, 6, 6> factor;
+  for (Eigen::Index i = 0; i < 36; ++i) factor(i / 6, i % 6) = random.normal();
+  const PoseCovariance covariance = factor * factor.transpose();
+  const Pose motion = motion3();
+  const PoseCovariance again = covarianceOfInverse(motion.inverse(), covarianceOfInverse(motion, covariance));
+  EXPECT_LT((again - covariance).norm(), 1e-10 * covariance.norm());
 }
 
 TEST(TransformMap, CarriesTheOccupancyOfEveryGaussian) {
   const GaussianMap<3> map = build<3>({{0.05, 0.05, 0.05}, {1.05, 0.05, 0.05}}, smallGrid<3>());
-  RigidMotion<3> motion;
+  Pose motion;
   motion.translation = {-3.0, 0.0, 0.0};
   const GaussianMap<3> moved = transformMap<3>(withOccupancy<3>(map, {-1.0f, 2.0f}), motion);
   for (std::size_t i = 0; i < 2; ++i)
@@ -235,35 +249,58 @@ TEST(TransformMap, IsTheSameForAnyNumberOfThreads) {
   expectSameMap<3>(transformMap<3>(map, motion3(), one), transformMap<3>(map, motion3(), two));
 }
 
-void expectRefusal(const GaussianMap<3>& map, const RigidMotion<3>& motion, const std::string& word) {
+template <int D>
+void expectRefusal(const GaussianMap<D>& map, const Pose& motion, const std::string& word,
+                   const std::optional<PoseCovariance>& covariance = {}) {
+  TransformOptions options;
+  options.covariance = covariance;
   try {
-    transformMap<3>(map, motion);
+    transformMap<D>(map, motion, options);
     ADD_FAILURE() << "not refused: " << word;
   } catch (const std::exception& error) {
     EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
   }
 }
 
-TEST(TransformMap, RefusesMotionsThatAreNone) {
+TEST(TransformMap, RefusesPosesWithAFault) {
   const GaussianMap<3> map = build<3>(randomCloud<3>(500, 4), smallGrid<3>());
-  RigidMotion<3> motion = motion3();
-  motion.rotation(0, 0) += 1e-6;
-  expectRefusal(map, motion, "not orthogonal");
-  motion = motion3();
-  motion.rotation.col(0) *= -1.0;
-  expectRefusal(map, motion, "determinant 1");
-  expectRefusal(map, motion3({std::numeric_limits<double>::quiet_NaN(), 0, 0}), "not finite");
-  expectRefusal(map, motion3({1e12, 0, 0}), "does not fit 32-bit cell indices");
-  motion = motion3();
-  motion.covariance = PoseCovariance<3>::Identity();
-  (*motion.covariance)(0, 1) = 0.5;
-  expectRefusal(map, motion, "not symmetric");
-  (*motion.covariance)(1, 0) = 0.5;
-  (*motion.covariance)(5, 5) = -1.0;
-  expectRefusal(map, motion, "positive semi-definite");
-  (*motion.covariance)(5, 5) = std::numeric_limits<double>::infinity();
-  expectRefusal(map, motion, "not finite");
-  expectRefusal(thinned<3>(map), motion3(), "compressed");
+  Pose motion = motion3();
+  motion.rotation.coeffs() *= 1.01;
+  expectRefusal<3>(map, motion, "has norm 1.01");
+  motion.rotation.coeffs().setZero();
+  expectRefusal<3>(map, motion, "the quaternion is zero");
+  expectRefusal<3>(map, motion3({std::numeric_limits<double>::quiet_NaN(), 0, 0}), "not finite");
+  expectRefusal<3>(map, motion3({1e12, 0, 0}), "does not fit 32-bit cell indices");
+  expectRefusal<3>(thinned<3>(map), motion3(), "compressed");
+}
+
+TEST(TransformMap, NormalisesTheQuaternion) {
+  const GaussianMap<3> map = build<3>({{1.05, 0.05, 0.05}}, smallGrid<3>());
+  Pose motion = motion3();
+  motion.rotation.coeffs() *= 1.0005;
+  EXPECT_LT((transformMap<3>(map, motion).gaussian(0, 0).mean - motion3() * map.gaussian(0, 0).mean).norm(), 1e-6);
+}
+
+TEST(TransformMap, RefusesCovariancesThatAreNotOfAPose) {
+  const GaussianMap<3> map = build<3>(randomCloud<3>(500, 4), smallGrid<3>());
+  PoseCovariance covariance = PoseCovariance::Identity();
+  covariance(0, 1) = 0.5;
+  expectRefusal<3>(map, motion3(), "not symmetric", covariance);
+  covariance(1, 0) = 0.5;
+  covariance(5, 5) = -1.0;
+  expectRefusal<3>(map, motion3(), "positive semi-definite", covariance);
+  covariance(5, 5) = std::numeric_limits<double>::infinity();
+  expectRefusal<3>(map, motion3(), "not finite", covariance);
+}
+
+TEST(TransformMap, RefusesMotionsOutOfThePlane) {
+  const GaussianMap<2> map = build<2>(randomCloud<2>(500, 4), smallGrid<2>());
+  Pose raised = motion2();
+  raised.translation.z() = 0.1;
+  expectRefusal<2>(map, raised, "not planar");
+  Pose tilted = motion2();
+  tilted.rotation = motion3().rotation;
+  expectRefusal<2>(map, tilted, "not planar");
 }
 
 }  // namespace

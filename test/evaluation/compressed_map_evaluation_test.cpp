@@ -36,7 +36,7 @@ GaussianMapOctree floorMap(bool bare) {
   std::vector<Vector<3>> points;
   for (int i = 0; i < 4000; ++i) points.emplace_back(random.uniform(), random.uniform(), 0.45);
   const GaussianMapOctree map = build<3>(points, {0.1, 10, 2, 0.0});
-  return bare ? thinMap<3>(map, {std::vector<char>(map.cellCount(0), false), {true}}) : map;
+  return bare ? keepCells<3>(map, {std::vector<char>(map.cellCount(0), false), {true}}) : map;
 }
 
 TEST(CompressedMapEvaluation, HasLeavesAtEveryScaleToTestWith) {

@@ -11,7 +11,8 @@
 
 namespace gaussmap::fuzz {
 
-/// Writes the bytes to the same file each time, named `name`, in memory where there is such a file system.
+/// Writes the bytes to a file with this name and returns its path. The file is the same each time, in memory
+/// (/dev/shm) if possible.
 inline std::filesystem::path asFile(const char* name, const std::uint8_t* data, std::size_t size) {
   static const std::filesystem::path folder = [] {
     std::string made =
@@ -32,7 +33,7 @@ inline std::filesystem::path asFile(const char* name, const std::uint8_t* data, 
   return path;
 }
 
-/// A reader may refuse a file with FileError; any other exception is a finding, as a crash is.
+/// Calls a reader. It may refuse the file with FileError; any other exception is a finding, like a crash.
 template <typename Read>
 void refusesOrReads(const Read& read) {
   try {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Map files: loading whole, by tiles, metadata, sizes.
+// Map files: the whole map, a box, the metadata, the sizes.
 #include "fuzz_file.h"
 #include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/io/gmap/map_reader.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Maps as PCD files of Gaussians, and maps of line segments.
+// PCD files that hold a map of Gaussians or a map of line segments.
 #include "fuzz_file.h"
 #include "gaussmap/io/export/segment_files.h"
 #include "gaussmap/io/pcd/map_pcd.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// PCD files: the coordinates, every column, whole records, the fingerprint.
+// PCD files: the coordinates, the columns, whole records, the fingerprint.
 #include "fuzz_file.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
 

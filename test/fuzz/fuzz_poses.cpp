@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pose files (TUM, KITTI), and their poses for scans.
+// Pose files (TUM, KITTI), and the assignment of their poses to scans.
 #include "fuzz_file.h"
 #include "gaussmap/io/scans/pose_file.h"
 

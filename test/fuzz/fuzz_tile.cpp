@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tiles of maps in space and in the plane. Nothing that a fuzzer makes up passes zstd's checksum, so that the bytes are
-// tried as they are, and as what stands inside a frame. What can be decoded must be encodable again.
+// Tiles of 3-D and 2-D maps. No input of a fuzzer has a correct zstd checksum. So the bytes are decoded as they are,
+// and again as the content of a valid zstd frame. A tile that can be decoded must be encodable again.
 #include <zstd.h>
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace {
 using namespace gaussmap;
 using namespace gaussmap::detail;
 
-const MapOptions kOptions{0.1, 10, 3, 0.01};  // of the seeds
+const MapOptions kOptions{0.1, 10, 3, 0.01};  // options of the seeds in corpus/tile
 
 template <int D>
 void decode(std::string_view bytes) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The index of a directory of PCD tiles, as Autoware writes it.
+// The index of a directory of PCD tiles, in Autoware's format.
 #include "fuzz_file.h"
 #include "gaussmap/io/export/map_tiles.h"
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Builds the fuzzers with clang and runs each for SECONDS, under address and undefined-behaviour sanitizers, from the
-# seeds in test/fuzz/corpus. What it finds beside them stays in BUILD/corpus, findings in BUILD/findings.
-# Usage: test/fuzz/run.sh [SECONDS [TARGET...]]      (default: 30 seconds each, all)
+# Builds the fuzzers with clang and runs each for SECONDS, with the address and undefined-behaviour sanitizers. The
+# seeds are in test/fuzz/corpus; new inputs go to build/sanitize/corpus, findings to build/sanitize/findings.
+# Usage: test/fuzz/run.sh [SECONDS [TARGET...]] (default: 30 seconds each, all targets)
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 seconds=${1:-30}

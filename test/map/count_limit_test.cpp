@@ -9,7 +9,7 @@
 namespace gaussmap {
 namespace {
 
-constexpr std::int64_t kMost = CellMoments<3>::kMaxPoints;
+constexpr std::int64_t kMax = CellMoments<3>::kMaxPoints;
 
 /// So many points at the corner of a cell, where products are largest.
 CellMoments<3> corner(std::int64_t count) {
@@ -34,40 +34,40 @@ PointBlock<3> block(std::size_t first_cell, std::size_t second_cell) {
 }
 
 TEST(CountLimit, OfMomentsIsThrownAndLeavesTheSums) {
-  CellMoments<3> full = corner(kMost - 1);
+  CellMoments<3> full = corner(kMax - 1);
   full.add({-32768, -32768, -32768});
-  EXPECT_EQ(full, corner(kMost));
+  EXPECT_EQ(full, corner(kMax));
   EXPECT_GT(full.product[0], 0);
   EXPECT_THROW(full.add({0, 0, 0}), std::length_error);
   EXPECT_THROW(full += corner(1), std::length_error);
-  EXPECT_THROW(full += corner(kMost), std::length_error);
-  EXPECT_EQ(full, corner(kMost));
+  EXPECT_THROW(full += corner(kMax), std::length_error);
+  EXPECT_EQ(full, corner(kMax));
   full -= corner(5);
   full += corner(5);
-  EXPECT_EQ(full, corner(kMost));
+  EXPECT_EQ(full, corner(kMax));
 }
 
 TEST(CountLimit, OfAGridIsThrownBeforeABlockIsCounted) {
   MomentGrid<3> grid(1.0);
-  grid.add({0, 0, 0}, corner(kMost - 10));
+  grid.add({0, 0, 0}, corner(kMax - 10));
   EXPECT_THROW(grid.add(block(11, 20)), std::length_error);
   EXPECT_EQ(grid.size(), 1u);
-  EXPECT_EQ(grid.pointCount(), kMost - 10);
-  EXPECT_EQ(grid[0].moments, corner(kMost - 10));
+  EXPECT_EQ(grid.pointCount(), kMax - 10);
+  EXPECT_EQ(grid[0].moments, corner(kMax - 10));
   EXPECT_EQ(grid.add(block(10, 20)), 30u);  // another cell has room
-  EXPECT_EQ(grid.find({0, 0, 0})->count, kMost);
+  EXPECT_EQ(grid.find({0, 0, 0})->count, kMax);
   EXPECT_EQ(grid.find({1, 1, 1})->count, 20);
   EXPECT_EQ(grid.add(block(0, 500)), 500u);
   EXPECT_THROW(grid.add(block(1, 0)), std::length_error);
-  EXPECT_EQ(grid.pointCount(), kMost + 520);
+  EXPECT_EQ(grid.pointCount(), kMax + 520);
 }
 
 TEST(CountLimit, OfMergedGridsIsThrown) {
   MomentGrid<3> grid(1.0), other(1.0);
-  grid.add({0, 0, 0}, corner(kMost - 10));
+  grid.add({0, 0, 0}, corner(kMax - 10));
   other.add({0, 0, 0}, corner(11));
   EXPECT_THROW(grid.merge(other), std::length_error);
-  EXPECT_EQ(grid[0].moments, corner(kMost - 10));
+  EXPECT_EQ(grid[0].moments, corner(kMax - 10));
 }
 
 }  // namespace

@@ -151,7 +151,7 @@ TEST(GaussianMap, FarFromTheOriginIsTheMapAtTheOriginShifted) {
 TEST(GaussianMap, OfNothingIsEmpty) {
   const GaussianMapOctree map = build<3>(std::vector<Vector<3>>{}, {});
   EXPECT_TRUE(map.empty());
-  EXPECT_TRUE(map.canGrow());
+  EXPECT_TRUE(map.acceptsScans());
   EXPECT_EQ(map.weight(2), 0.0);
   EXPECT_FALSE(map.find({0, 0, 0}, 1));
 }
@@ -180,7 +180,7 @@ TEST(GaussianMap, MayHaveCoarseCellsThatStandAlone) {
   scales[1].first_child = {0, 1, 1};
   const GaussianMapOctree map(options, scales);
   EXPECT_TRUE(map.isCompressed());
-  EXPECT_FALSE(map.canGrow());
+  EXPECT_FALSE(map.acceptsScans());
   EXPECT_EQ(map.weight(0), 1.0);
   EXPECT_EQ(map.weight(1), 3.0);
   EXPECT_FALSE(map.isLeaf(0, 1));
@@ -201,7 +201,7 @@ TEST(GaussianMap, MayHaveNothingButItsCoarsestScale) {
   scales[1].first_child = {0, 0, 0};
   const GaussianMapOctree map(options, scales);
   EXPECT_FALSE(map.empty());
-  EXPECT_FALSE(map.canGrow());
+  EXPECT_FALSE(map.acceptsScans());
   EXPECT_TRUE(map.gaussiansUnder(0, 1).empty());
   EXPECT_EQ(map.weight(0), 0.0);
 }

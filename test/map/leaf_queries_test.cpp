@@ -5,7 +5,7 @@
 
 #include <stdexcept>
 
-#include "editing/thin_map.h"
+#include "editing/keep_cells.h"
 #include "gaussmap/mapping/build.h"
 #include "map/random_clouds.h"
 
@@ -17,7 +17,7 @@ namespace {
 /// Three points in two cells of 1 m; of the cells of 0.1 m under the second one nothing is left.
 GaussianMapOctree halfCompressed() {
   const GaussianMapOctree map = build<3>({{0.05, 0.05, 0.05}, {1.05, 0.0, 0.0}, {1.95, 0.0, 0.0}}, {0.1, 10, 2, 0.0});
-  return thinMap<3>(map, {{true, false, false}, {true, true}});
+  return keepCells<3>(map, {{true, false, false}, {true, true}});
 }
 
 TEST(Leaves, AreTheFinestGaussiansAndTheCellsThatStandAlone) {

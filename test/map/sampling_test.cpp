@@ -72,10 +72,10 @@ TEST(SampleMap, KeepsSamplesInTheirCellsTenThousandKilometresAway) {
 /// Keys of the finest cells under every Gaussian of a scale: the smallest and the largest on each axis.
 template <int D>
 std::vector<std::pair<CellKey<D>, CellKey<D>>> memberKeys(const GaussianMap<D>& map, int scale) {
-  constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
+  constexpr std::int32_t kMax = std::numeric_limits<std::int32_t>::max();
   CellKey<D> none_low, none_high;
-  none_low.fill(kMost);
-  none_high.fill(-kMost);
+  none_low.fill(kMax);
+  none_high.fill(-kMax);
   std::vector<std::pair<CellKey<D>, CellKey<D>>> ranges(map.gaussianCount(scale), {none_low, none_high});
   for (std::size_t i = 0; i < map.gaussianCount(0); ++i) {
     std::size_t cluster = i;

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "clustering/undo_merges.h"
+#include "clustering/merge_gains.h"
 #include "gaussmap/clustering/agglomerate.h"
 #include "mapping/refine_helpers.h"
 
@@ -44,7 +44,7 @@ TEST(RefineByAgglomeration, CutsTheDendrogramsWhereItGainsMost) {
       std::vector<std::vector<double>> gains;
       for (std::size_t cell = 0; cell < refined.cellCount(s); ++cell) {
         dendrograms.push_back(dendrogramUnder(refined, cell, s, cost));
-        gains.push_back(gainsOfUndoing(dendrograms.back()));
+        gains.push_back(mergeGains(dendrograms.back()));
       }
       const std::vector<std::size_t> parts = partsPerCell(gains, refined.gaussianCount(s) - refined.cellCount(s));
       for (std::size_t cell = 0; cell < refined.cellCount(s); ++cell) {

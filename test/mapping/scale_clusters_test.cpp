@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mapping/scale_clusters.h"
 
-#include "clustering/undo_merges.h"
-#include "map/areas.h"
+#include "clustering/merge_gains.h"
+#include "map/occupied_areas.h"
 #include "mapping/refine_helpers.h"
 
 namespace gaussmap {
@@ -20,11 +20,11 @@ struct RoomScales {
 
 TEST(ScaleClusters, GiveEveryCellThePartsThatPartsPerCellSays) {
   const RoomScales room;
-  for (const std::size_t extra : {std::size_t{0}, std::size_t{17}, room.clusters.mostExtra() + 5}) {
+  for (const std::size_t extra : {std::size_t{0}, std::size_t{17}, room.clusters.maxExtra() + 5}) {
     const ClusterCut cut = room.clusters.cut(extra);
     const std::vector<std::size_t> parts = partsPerCell(room.clusters.gains(), extra);
     ASSERT_EQ(cut.first.size(), parts.size() + 1);
-    EXPECT_EQ(cut.clusters(), parts.size() + std::min(extra, room.clusters.mostExtra()));
+    EXPECT_EQ(cut.clusters(), parts.size() + std::min(extra, room.clusters.maxExtra()));
     for (std::size_t cell = 0; cell < parts.size(); ++cell) {
       ASSERT_EQ(cut.first[cell + 1] - cut.first[cell], parts[cell]);
       const IndexRange under = room.pair.gaussiansUnder(cell);

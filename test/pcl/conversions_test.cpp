@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// For pcl::PassThrough<PointGaussian>: PCL's rule for point types that are not its own.
+#define PCL_NO_PRECOMPILE
 #include "gaussmap/pcl/conversions.h"
 
 #include <gtest/gtest.h>
 #include <pcl/filters/passthrough.h>
 #include <pcl/io/pcd_io.h>
-#include <pcl/filters/impl/passthrough.hpp>
 
 #include "gaussmap/io/pcd/map_pcd.h"
 #include "gaussmap/mapping/refine.h"

@@ -36,7 +36,7 @@ TEST(Descend, ShortensStepsThatWouldGoUp) {
   // Newton's step for atan from |x| > 1.39 overshoots to a worse place, each time further.
   const auto arc = along([](double x) { return std::atan(x); }, [](double x) { return 1.0 / (1.0 + x * x); });
   for (const double from : {1.5, 3.0, -10.0}) {
-    const Descent down = descend(arc, at(from), kLimits);
+    const DescentResult down = descend(arc, at(from), kLimits);
     EXPECT_TRUE(down.converged) << from;
     EXPECT_NEAR(down.pose.translation.x(), 0.0, 1e-6) << from;
   }
@@ -52,7 +52,7 @@ TEST(Descend, NeverEndsHigherThanItBegan) {
 TEST(Descend, EndsInOneStepWhereTheResidualIsStraight) {
   int calls = 0;
   const auto line = along([](double x) { return 2.0 * (x - 7.0); }, [](double) { return 2.0; }, &calls);
-  const Descent down = descend(line, at(0.0), {50, 1e-3, 1e-3});
+  const DescentResult down = descend(line, at(0.0), {50, 1e-3, 1e-3});
   EXPECT_NEAR(down.pose.translation.x(), 7.0, 1e-4);
   EXPECT_EQ(down.iterations, 2);  // the second one finds that nothing is left to do
   EXPECT_EQ(calls, 3);
@@ -62,14 +62,14 @@ TEST(Descend, EndsInOneStepWhereTheResidualIsStraight) {
 TEST(Descend, StopsWhereEveryStepGoesUp) {
   // A slope of the wrong sign: no step is ever taken.
   const auto wrong = along([](double x) { return x; }, [](double) { return -1.0; });
-  const Descent down = descend(wrong, at(2.0), kLimits);
+  const DescentResult down = descend(wrong, at(2.0), kLimits);
   EXPECT_EQ(down.pose.translation.x(), 2.0);
   EXPECT_TRUE(down.converged);
   EXPECT_LT(down.iterations, 50);
 }
 
 TEST(Descend, DoesNothingWhereNothingIsMet) {
-  const Descent down = descend([](const Pose&) { return NormalEquations(); }, at(2.0), kLimits);
+  const DescentResult down = descend([](const Pose&) { return NormalEquations(); }, at(2.0), kLimits);
   EXPECT_EQ(down.iterations, 0);
   EXPECT_FALSE(down.converged);
   EXPECT_EQ(down.pose.translation.x(), 2.0);
@@ -77,7 +77,7 @@ TEST(Descend, DoesNothingWhereNothingIsMet) {
 
 TEST(Descend, SaysWhenIterationsRunOut) {
   const auto arc = along([](double x) { return std::atan(x); }, [](double x) { return 1.0 / (1.0 + x * x); });
-  const Descent down = descend(arc, at(3.0), {2, 1e-8, 1e-8});
+  const DescentResult down = descend(arc, at(3.0), {2, 1e-8, 1e-8});
   EXPECT_EQ(down.iterations, 2);
   EXPECT_FALSE(down.converged);
 }

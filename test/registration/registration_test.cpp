@@ -148,7 +148,7 @@ TEST(Registration, SaysThatACorridorDoesNotTellWhereAlongIt) {
   const std::vector<Vector<3>> scan = corridor(false, 2);
   const RegistrationResult lost = registerScan({scan.begin(), scan.end()}, open);
   EXPECT_TRUE(lost.degenerate);
-  EXPECT_GT(std::abs(lost.weakest[0]), 0.99);
+  EXPECT_GT(std::abs(lost.least_observable[0]), 0.99);
   EXPECT_NEAR(lost.pose.translation.y(), 0.0, 0.01);
   EXPECT_NEAR(lost.pose.translation.z(), 0.0, 0.01);
 

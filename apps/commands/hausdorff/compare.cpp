@@ -42,7 +42,7 @@ void printHead() {
 }
 
 std::vector<Vector<3>> readSubject(const HausdorffCommand& command) {
-  ScanInput cloud = command.reference;  // for the frame and the range
+  ScanInput cloud = command.reference;  // copies --frame and --max-range
   cloud.paths = {command.subject};
   cloud.poses.clear();
   return readPoints(cloud, command.samples.threads);
@@ -77,7 +77,7 @@ void compareMap(const HausdorffCommand& command, ReferenceKind kind) {
   if (other) maps.push_back(&*other);
   const std::vector<Level> levels = chosenLevels(command, maps);
   if (!command.errors.path.empty() && levels.size() > 1)
-    throw UsageError("--write-errors writes one cloud: choose a --scale, or --leaves");
+    throw UsageError("--write-errors: writes one cloud; choose a --scale or --leaves");
 
   Json all = Json::array(), written;
   if (!command.json) printHead();

@@ -31,18 +31,19 @@ struct HausdorffCommand {
   std::string onlyReference() const { return reference.paths.size() == 1 ? reference.paths.front() : std::string(); }
 };
 
-// Four things that the command can do; each prints its result.
+// The four jobs of the command. Each function prints its result.
 void compareMap(const HausdorffCommand& command, ReferenceKind reference);
 void compareCloud(const HausdorffCommand& command, ReferenceKind reference);
 void compareMaxima(const HausdorffCommand& command);
 void scoreMap(const HausdorffCommand& command);
 
-/// A scale; nullopt: all leaves of the map.
+/// A scale, or std::nullopt for all leaves of the map.
 using Level = std::optional<int>;
 std::string textOf(const Level& level);
 Json jsonOf(const Level& level);
-/// What is compared of some maps: what the user chose, else every scale that all of them have, preceded by the leaves
-/// if a map is compressed. Throws UsageError if a map does not have the scale.
+/// Returns the levels to compare: the level that the user chose, or else every scale that all maps have. If a map is
+/// compressed, the leaves come first, and scales without cells in some map are left out. Throws UsageError if a map
+/// does not have the chosen scale.
 std::vector<Level> chosenLevels(const HausdorffCommand& command, const std::vector<const GaussianMap<3>*>& maps);
 
 }  // namespace gaussmap::app

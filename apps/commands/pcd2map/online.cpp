@@ -32,7 +32,7 @@ class StatisticsTable {
           << s.forget_time << ',' << s.refine_time;
     for (std::size_t scale = 1; scale < scales_; ++scale) {
       text_ << ',';
-      if (scale < s.errors.size()) text_ << s.errors[scale];  // else nothing was refined
+      if (scale < s.errors.size()) text_ << s.errors[scale];  // empty field: this scan refined nothing
     }
     text_ << '\n';
   }

@@ -17,39 +17,41 @@ const std::map<std::string, OccupancySamples> kSamples = {{"mean", OccupancySamp
 
 void addOnlineOptions(Command& command, OnlineInput& input) {
   OnlineOptions& options = input.options;
-  const Option online =
-      command.flag("--online", input.on, "map scan by scan: occupancy from range images, deletes what has moved");
+  const Option online = command.flag("--online", input.on,
+                                     "add scans one by one: learn occupancy from range images, delete what has moved");
   for (const Option& option : {
-           command.choiceOf("--learning-rate", options.learning_rate, kRates, "how far a point moves its cluster"),
+           command.choiceOf("--learning-rate", options.learning_rate, kRates,
+                            "weight of a new point: sample-mean = 1/n, occupancy = Yguel 2009, eq. (5)"),
            command.number("--occupancy-every", options.occupancy_every, 1, 1000000,
-                          "scans between two updates of the occupancy"),
+                          "number of scans between two updates of the occupancy"),
            command.choiceOf("--occupancy-samples", options.samples, kSamples,
-                            "which points of a cluster are tested: its mean, or random samples"),
+                            "points of a cluster that are tested: its mean, or random samples"),
            command.number("--look-back", options.look_back, 0, 100000,
-                          "earlier range images that new cells are tested with"),
+                          "number of earlier range images that new cells are tested against"),
            command.number("--no-return-is-free", options.no_return_is_free, 1e-3, 1e6,
-                          "count directions without a return as free space up to this range [m]"),
+                          "treat directions without a return as free space up to this range [m]"),
            command.list("--max-ranges", options.max_ranges, 1e-3, 1e9,
-                        "one per scale, finest first: cells farther away are not tested [m]"),
-           command.flag("--keep", input.keep, "delete nothing"),
+                        "do not test cells farther than this [m]: one range per scale, finest first"),
+           command.flag("--keep", input.keep, "do not delete clusters"),
            command.number("--refine-every", options.refine_every, 0, 1000000,
-                          "scans between two refinements, 0 = never"),
+                          "number of scans between two refinements, 0 = never"),
            command.number("--refine-cells", options.refine_cells, 0, 1000000000,
-                          "most clusters that one refinement adds to a scale, 0 = as many as the budget allows (in the "
-                          "paper: 4)"),
-           command.text("--stats", input.stats, "write what each scan changed and how long it took (.csv)"),
-           command.text("--removed", input.removed, "write the deleted clusters, with the evidence (.pcd)"),
+                          "maximum clusters that a refinement adds to a scale, 0 = no limit (paper: 4)"),
+           command.text("--stats", input.stats, "CSV file to write: what each scan changed, and how long it took"),
+           command.text("--removed", input.removed, "PCD file to write: the deleted clusters and their evidence"),
        })
     option.needs(online).group("With --online");
+  command.files({"--stats"}, {".csv"});
+  command.files({"--removed"}, {".pcd"});
 }
 
 void checkOnline(const OnlineInput& input, const BudgetInput& budget, const Output& map,
                  const std::vector<std::filesystem::path>& inputs) {
   if (!input.on) return;
   if (!budget.max_gaussians.empty() || !budget.max_bytes.empty() || budget.max_error > 0.0)
-    throw UsageError("--online takes --budget only: refine the map afterwards for another limit");
-  if (budget.cost) throw UsageError("--online takes no --cost");
-  if (budget.refine.seed != RefineOptions().seed) throw UsageError("--online takes no --seed");
+    throw UsageError("--online: supports only --budget; use gaussmap refine afterwards for another limit");
+  if (budget.cost) throw UsageError("--cost: not with --online");
+  if (budget.refine.seed != RefineOptions().seed) throw UsageError("--seed: not with --online");
   checkOutputs({input.stats, input.removed}, map.force, inputs, {map.path});
 }
 

@@ -21,12 +21,12 @@ struct OnlineInput {
 };
 void addOnlineOptions(Command& command, OnlineInput& input);
 
-/// Throws UsageError for options that on-line mapping does not have, or outputs that cannot be written. `map` is the
-/// main output.
+/// Throws UsageError for options that on-line mapping does not support, and for outputs that cannot be written. `map`
+/// is the main output.
 void checkOnline(const OnlineInput& input, const BudgetInput& budget, const Output& map,
                  const std::vector<std::filesystem::path>& inputs);
 
-/// The options of the mapper, with those of all commands.
+/// Returns the options of the mapper, including those that other options of the command set.
 OnlineOptions onlineOptions(const OnlineInput& input, const MapOptions& map, const AccumulateOptions& reading,
                             const BudgetInput& budget);
 

@@ -20,33 +20,34 @@ struct Pcd2mapOptions {
   BudgetInput budget;
   OnlineInput online;
   std::string update;                   // map file to add the scans to; empty: build a new one
-  std::optional<double> update_budget;  // with `update`; not given: that of the map
+  std::optional<double> update_budget;  // with `update`; nullopt: the budget of the map
   std::string max_memory;               // empty: no limit
   bool json = false;
 };
 
-/// What is said about a map that was written.
+/// The counts of a map that was written, for the report.
 struct WrittenMap {
   PointCounts counts;
   Json scales = Json::array();
 };
 
-// Four ways from scans to a map. The first three write the output of `task`, with the history in it.
+// Four ways to turn scans into a map. The first three write the output file of the command, with its history.
 
-/// All scans at once, in memory.
+/// Builds the map in memory.
 WrittenMap buildInMemory(const Pcd2mapOptions& options, const Scans& scans, const AccumulateOptions& reading,
                          MapTask& task);
 
-/// Tile by tile, through a temporary file. Gives the same map, without error curves.
+/// Builds the map tile by tile, with a temporary file. The map is the same, but without error curves.
 WrittenMap buildWithinMemory(const Pcd2mapOptions& options, const Scans& scans, const AccumulateOptions& reading);
-/// Throws UsageError for options that need the whole map in memory.
+/// Throws UsageError if --max-memory is combined with options that need the whole map in memory.
 void checkMemory(const Pcd2mapOptions& options);
 
-/// Scan by scan, with occupancy; writes the statistics and the deleted clusters if they are asked for.
+/// Builds the map scan by scan, with occupancy. Writes the statistics and the deleted clusters if --stats and --removed
+/// are given.
 WrittenMap buildOnline(const Pcd2mapOptions& options, const Scans& scans, const AccumulateOptions& reading,
                        MapTask& task);
 
-/// Adds the scans to an existing map file and reports it.
+/// Adds the scans to an existing map file and prints a report.
 void updateFromScans(const Pcd2mapOptions& options);
 
 }  // namespace gaussmap::app

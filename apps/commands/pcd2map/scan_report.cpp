@@ -9,7 +9,7 @@ namespace gaussmap::app {
 
 void requirePoints(const PointCounts& counts, const Scans& scans) {
   if (counts.accepted > 0) return;
-  throw std::runtime_error(nameOf(scans) + ": of " + std::to_string(counts.read) + " points none is usable: " +
+  throw std::runtime_error(nameOf(scans) + ": none of the " + std::to_string(counts.read) + " points is usable: " +
                            std::to_string(counts.non_finite) + " are not finite, " + std::to_string(counts.at_sensor) +
                            " at range 0, " + std::to_string(counts.beyond_range) + " beyond --max-range");
 }

@@ -9,12 +9,12 @@
 
 namespace gaussmap::app {
 
-/// Throws unless some point is usable; the message says why points were dropped.
+/// Throws std::runtime_error if no point is usable. The message says why the points were dropped.
 void requirePoints(const PointCounts& counts, const Scans& scans);
 
 Json countsJson(const PointCounts& counts);
 
-/// The step of the history for a map from scans.
+/// Returns the step of the history for a map from scans.
 Json historyOf(const Scans& scans, const PointCounts& counts);
 
 /// "20 scans, 2203027 points (left out: ...)".

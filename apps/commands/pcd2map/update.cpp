@@ -11,7 +11,7 @@
 namespace gaussmap::app {
 namespace {
 
-/// Budget and cost of the last step that refined the map.
+/// Budget and cost of the last refinement in the history of a map.
 struct Recorded {
   std::optional<double> budget;
   std::optional<std::string> cost;
@@ -83,7 +83,7 @@ void updateFromScans(const Pcd2mapOptions& options) {
   if (updating.budget) step["budget"] = *updating.budget;
   if (merging.cost) step["cost"] = *merging.cost;
   const MapUpdate update = updateMap<3>(options.update, accumulated.moments, updating, [&](MapMetadata& metadata) {
-    metadata.erase("error_curves");  // of the map as it was
+    metadata.erase("error_curves");  // they describe the old map
     addHistory(metadata, step);
   });
   report(options, scans, accumulated.counts, update, start);

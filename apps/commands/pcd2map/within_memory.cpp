@@ -12,10 +12,10 @@ void checkMemory(const Pcd2mapOptions& options) {
   if (options.online.on || options.budget.method != "agglomerate" || !options.budget.max_gaussians.empty() ||
       !options.budget.max_bytes.empty() || options.budget.max_error > 0.0)
     throw UsageError(
-        "--max-memory: goes tile by tile, with --budget alone; --online, --method insert, --max-gaussians, --max-bytes "
-        "and --max-error look at the whole map (gaussmap refine does so afterwards)");
-  if (amountOf("--max-memory", options.max_memory, true) < kLeastBuildMemory)
-    throw UsageError("--max-memory " + options.max_memory + ": at least " + std::to_string(kLeastBuildMemory) +
+        "--max-memory: supports only --budget, because --online, --method insert, --max-gaussians, --max-bytes and "
+        "--max-error need the whole map in memory; use gaussmap refine afterwards");
+  if (amountOf("--max-memory", options.max_memory, true) < kMinBuildMemory)
+    throw UsageError("--max-memory " + options.max_memory + ": at least " + std::to_string(kMinBuildMemory) +
                      " bytes are needed");
 }
 
@@ -29,7 +29,7 @@ WrittenMap buildWithinMemory(const Pcd2mapOptions& options, const Scans& scans, 
   const auto metadataOf = [&](const PointCounts& counts) {
     requirePoints(counts, scans);
     MapMetadata metadata;
-    // As refineWithin() writes it, so that the files are equal.
+    // The same step as that of refineWithin(), so that the files are identical.
     const std::string details = detailsOf(options.budget, historyOf(scans, counts));
     recordStep(metadata, refineStep(building.budget, building.refine, details));
     return metadata;

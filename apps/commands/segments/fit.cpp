@@ -12,14 +12,14 @@
 namespace gaussmap::app {
 namespace {
 
-/// One line per scan, as in Figs. 7 and 8 of the paper.
+/// Adds one line per scan: the quantities of Leal 2000, Figs. 7 and 8.
 void addStatistics(std::ostream& table, std::size_t scan, const std::string& name, const SegmentStatistics& s) {
   table << scan << ',' << csvQuoted(name) << ',' << s.beams << ',' << s.associated << ',' << s.created << ','
         << s.splits << ',' << s.merges << ',' << s.pruned << ',' << s.segments << ',' << s.normal_variance << ','
         << s.coverage << '\n';
 }
 
-/// Where the utility asks for more detail, at the end.
+/// Returns the circle in which the utility demands more detail after the last scan.
 std::optional<SegmentPicture::Field> fieldOf(const FitterInput& fitting, const Vector<2>& observer) {
   if (!fitting.viewpoint.empty())
     return SegmentPicture::Field{{fitting.viewpoint[0], fitting.viewpoint[1]}, fitting.viewpoint[2]};
@@ -52,7 +52,8 @@ FittedSegments fitSegments(const SegmentsCommand& command, const LaserScans& inp
     fitted.merges += fitted.last.merges;
     fitted.pruned += fitted.last.pruned;
   }
-  if (fitted.beams == 0) throw FileError(input.files.front(), "no beam of the scans returned: there is nothing to map");
+  if (fitted.beams == 0)
+    throw FileError(input.files.front(), "no beam of the scans has a return, so there is nothing to map");
   fitted.map = fitter.map();
   fitted.seconds = now() - start;
   fitted.scans = fitter.scans();
@@ -79,7 +80,7 @@ LaserScans testScans(const SegmentsCommand& command, const std::vector<LaserScan
     test = readLaserScans(input);
   }
   if (test.scans.empty())
-    throw UsageError("--evaluate: all scans are in the map; --every 2 leaves every other one out");
+    throw UsageError("--evaluate: all scans are in the map; use --every 2 to keep every second scan out of it");
   return test;
 }
 

@@ -54,39 +54,38 @@ void addFitterOptions(Command& command, FitterInput& input) {
   for (const Option& option : {
            command.choice("--utility", input.utility,
                           {"description-length", "viewpoint-invariant", "viewpoint-dependent"},
-                          "what decides about split and merge"),
+                          "criterion for splitting and merging segments"),
            command.choiceOf("--policy", options.policy, kPolicies,
-                            "what a segment remembers: moments in cells, or particles"),
-           command.number("--l-min", input.min_length, 1e-3, 1e6,
-                          "shortest segment that the utilities of the paper split, bound of particles [m]; default: 1"),
+                            "evidence that a segment keeps: moments in cells, or particles"),
+           command.number(
+               "--l-min", input.min_length, 1e-3, 1e6,
+               "utilities of the paper: shorter segments are not split [m]; also bounds particles; default: 1"),
            command.number("--sigma", input.sigma, 1e-6, 1e6,
-                          "standard deviation across a segment: expected (description-length, default 0.03) or allowed "
-                          "(utilities of the paper, default 0.06) [m]"),
+                          R"(standard deviation across a segment [m]: expected (description-length, default: 0.03)
+                          or maximum (utilities of the paper, default: 0.06))"),
            command.number("--segment-cost", input.segment_cost, 0.0, 1e9,
-                          "cost of a segment for description-length [nat]; default: 3"),
-           command.number(
-               "--merge-ratio", input.merge_ratio, 0.0, 0.999999,
-               "alpha: the utilities of the paper merge below this part of the allowed variance; default: 0.5"),
+                          "description-length: cost per segment [nat]; default: 3"),
+           command.number("--merge-ratio", input.merge_ratio, 0.0, 0.999999,
+                          "utilities of the paper: alpha, merge up to this share of sigma^2; default: 0.5"),
            command.numbers("--viewpoint", input.viewpoint, 3, -1e9, 1e9,
-                           "x y r: more detail within the distance r of (x, y) [m]; for --utility viewpoint-dependent"),
-           command.number(
-               "--view-radius", input.view_radius, 1e-3, 1e9,
-               "more detail within this distance of the sensor [m]; for --utility viewpoint-dependent; default: 5"),
+                           "viewpoint-dependent: x y r, more detail within the distance r of (x, y) [m]"),
+           command.number("--view-radius", input.view_radius, 1e-3, 1e9,
+                          "viewpoint-dependent: more detail this near to the sensor [m]; default: 5"),
            command.number("--view-scale", input.view_scale, 1e-3, 1.0,
-                          "--l-min in that area, as a part of --l-min; default: 0.33"),
+                          "viewpoint-dependent: factor of --l-min in that area; default: 0.33"),
            command.number("--range-noise", options.noise.range, 0.0, 100.0,
                           "standard deviation of the laser's ranges [m]"),
            command.number("--bearing-noise", options.noise.bearing, 0.0, 1.0,
-                          "standard deviation of its bearings [rad]"),
+                          "standard deviation of the laser's bearings [rad]"),
            command.number("--particles", options.particles.samples, 1, 100000, "particles per observation"),
-           command.number("--per-metre", options.particles.per_metre, 1e-3, 1e9, "particles kept per metre of segment"),
+           command.number("--per-metre", options.particles.per_metre, 1e-3, 1e9,
+                          "maximum number of particles per metre of segment"),
            command.choiceOf("--particle-limit", options.particles.limit, kLimits,
-                            "where surplus particles are dropped: in the stretch that has too many (bins), or in the "
-                            "segment (paper)"),
+                            R"(where surplus particles are removed: in bins of 0.25 m with too many (bins),
+                            or anywhere in the segment, as in the paper (segment))"),
            command.flag("--no-prune", input.no_prune, "keep segments that many rays pass through"),
            command.flag("--no-refine", input.no_refine,
-                        "do not refine the map as a whole after the last scan; always so with the utilities of the "
-                        "paper"),
+                        "do not optimise the whole map at the end; the utilities of the paper never do"),
            command.seed(options.particles.seed, "seed of the particles"),
        })
     option.group(kGroup);
@@ -100,10 +99,10 @@ SegmentFitterOptions fitterOptions(const FitterInput& input) {
   SegmentFitterOptions options = input.options;
   const bool particles = options.policy == EvidencePolicy::ParticleSets;
   refuse(input.min_length && !isPapers(input) && !particles, "--l-min",
-         "only the paper's utilities and particles have one: add --utility viewpoint-invariant or --policy particles");
+         "only for the paper's utilities and for particles; add --utility viewpoint-invariant or --policy particles");
   options.min_length = input.min_length.value_or(options.min_length);
   options.prune = !input.no_prune;
-  options.optimise = !input.no_refine && !isPapers(input);  // what they decided stays
+  options.optimise = !input.no_refine && !isPapers(input);  // the decisions of the paper's utilities are final
   return options;
 }
 
@@ -111,9 +110,9 @@ std::shared_ptr<SegmentUtility> makeUtility(const FitterInput& input) {
   refuse(!input.viewpoint.empty() && !isDependent(input), "--viewpoint", "add --utility viewpoint-dependent");
   refuse(input.view_radius && !isDependent(input), "--view-radius", "add --utility viewpoint-dependent");
   refuse(input.view_scale && !isDependent(input), "--view-scale", "add --utility viewpoint-dependent");
-  refuse(input.view_radius && !input.viewpoint.empty(), "--view-radius", "--viewpoint has a radius of its own");
+  refuse(input.view_radius && !input.viewpoint.empty(), "--view-radius", "not with --viewpoint, which has a radius");
   refuse(input.merge_ratio && !isPapers(input), "--merge-ratio", "add --utility viewpoint-invariant");
-  refuse(input.segment_cost && isPapers(input), "--segment-cost", "of --utility description-length only");
+  refuse(input.segment_cost && isPapers(input), "--segment-cost", "only for --utility description-length");
   if (isDependent(input)) return std::make_shared<ViewpointDependentUtility>(dependentOptions(input));
   if (isPapers(input)) return std::make_shared<ViewpointInvariantUtility>(invariantOptions(input));
   DescriptionLengthOptions options;

@@ -11,7 +11,7 @@
 
 namespace gaussmap::app {
 
-/// How `gaussmap segments` fits. Options that are not given keep the default of the library.
+/// The fitting options of `gaussmap segments`. An option that is not given keeps the default of the library.
 struct FitterInput {
   SegmentFitterOptions options;
   std::string utility = "description-length";
@@ -20,12 +20,12 @@ struct FitterInput {
   bool no_prune = false, no_refine = false;
 };
 
-/// Adds all of them, as a group of their own.
+/// Adds these options as a separate group.
 void addFitterOptions(Command& command, FitterInput& input);
-/// The name of an option of this group that was given, empty if none was.
+/// Returns the name of an option of this group that was given; empty if none was given.
 std::string givenFitterOption(const Command& command);
 
-/// Throws UsageError for an option that the chosen utility or policy does not have.
+/// Both throw UsageError for an option that does not apply to the chosen utility or policy.
 SegmentFitterOptions fitterOptions(const FitterInput& input);
 std::shared_ptr<SegmentUtility> makeUtility(const FitterInput& input);
 

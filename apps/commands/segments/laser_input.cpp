@@ -12,13 +12,13 @@
 namespace gaussmap::app {
 namespace {
 
-constexpr std::size_t kMostWarnings = 5;  // about one log
+constexpr std::size_t kMaxWarnings = 5;  // per log
 
 LaserScans readLogs(const std::vector<std::string>& paths) {
   LaserScans all;
   for (const std::string& path : paths) {
     const CarmenLog log = readCarmenLog(path);
-    const std::size_t shown = std::min(log.faults.size(), kMostWarnings);
+    const std::size_t shown = std::min(log.faults.size(), kMaxWarnings);
     for (std::size_t i = 0; i < shown; ++i)
       warn(path + ": line " + std::to_string(log.faults[i].line) + " is left out: " + log.faults[i].what);
     const std::size_t more = log.faults.size() - shown + log.more_faults;
@@ -58,9 +58,10 @@ void addLaserOptions(Command& command, LaserInput& input) {
       .texts("scans", input.scans.paths,
              "CARMEN logs (.log, .log.gz), or PCD scans of a planar laser, or directories of them")
       .required();
+  command.files({"scans"}, {".log", ".log.gz", ".pcd"});
   addScanOptions(command, input.scans);
   command.numbers("--slice", input.slice, 2, -1e6, 1e6,
-                  "use the points of 3-D scans between two heights of the map [m]");
+                  "use only points of 3-D scans between these two heights in the map frame [m]");
   command.number("--position-noise", input.position_noise, 0.0, 100.0, "standard deviation of the poses' x and y [m]")
       .rare();
   command.number("--heading-noise", input.heading_noise, 0.0, 1.0, "standard deviation of the poses' heading [rad]")
@@ -73,9 +74,10 @@ LaserScans readLaserScans(const LaserInput& input) {
       std::count_if(paths.begin(), paths.end(), [](const std::string& path) { return isCarmenLogName(path); });
   const bool are_logs = logs > 0;
   if (are_logs && static_cast<std::size_t>(logs) < paths.size())
-    throw UsageError("logs and PCD scans cannot be mixed: make a map of one kind");
+    throw UsageError("logs and PCD scans cannot be mixed; use only one kind per map");
   if (are_logs && (!input.slice.empty() || !input.scans.poses.empty() || input.scans.frame != "sensor"))
-    throw UsageError("--slice, --poses and --frame are for PCD scans: a log has planar scans with their poses");
+    throw UsageError(
+        "--slice, --poses and --frame: only for PCD scans, because a log contains planar scans with their poses");
   LaserScans all = are_logs ? readLogs(paths) : readPcds(input);
   for (LaserScan& scan : all.scans) {
     if (are_logs && input.scans.max_range > 0.0) scan.max_range = std::min(scan.max_range, input.scans.max_range);

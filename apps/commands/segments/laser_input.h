@@ -11,25 +11,25 @@
 
 namespace gaussmap::app {
 
-/// Sweeps of a planar laser, from CARMEN logs or from PCD scans.
+/// Options for the scans of a planar laser, from CARMEN logs or from PCD files.
 struct LaserInput {
   ScanInput scans;
   std::vector<double> slice;    // z0 z1, or empty
-  double position_noise = 0.0;  // of every pose [m]
-  double heading_noise = 0.0;   // [rad]
+  double position_noise = 0.0;  // standard deviation of every pose in x and y [m]
+  double heading_noise = 0.0;   // standard deviation of every heading [rad]
 };
 
-/// Adds the positional IN... and the options that say how they are read.
+/// Adds the positional argument of the inputs and the options for reading them.
 void addLaserOptions(Command& command, LaserInput& input);
 
 struct LaserScans {
   std::vector<LaserScan> scans;
-  std::vector<std::string> names;            // one per scan: its file, or "file:n" for the n-th scan of a log
-  std::vector<std::filesystem::path> files;  // that were read
+  std::vector<std::string> names;            // one per scan: its file, or "FILE:N" for scan N of a log, from 0
+  std::vector<std::filesystem::path> files;  // the input files
 };
 
-/// Warns of damaged lines of logs on stderr. Throws UsageError if logs and PCD scans are mixed, or if options do not go
-/// with logs.
+/// Reads the scans. Warns of damaged lines of logs on stderr. Throws UsageError if logs and PCD scans are mixed, or if
+/// an option does not apply to logs.
 LaserScans readLaserScans(const LaserInput& input);
 
 }  // namespace gaussmap::app

@@ -9,7 +9,8 @@
 
 namespace gaussmap::app {
 
-// One line on stdout each, or the same as JSON. `scans`: how many were scored.
+// printScore() prints one line on stdout; scoreJson() returns the same values as JSON. `scans` is the number of scored
+// scans.
 void printScore(const detail::HoldOutScore& score, std::size_t scans);
 Json scoreJson(const detail::HoldOutScore& score, std::size_t scans);
 void printScore(const detail::WallScore& score);

@@ -10,46 +10,60 @@
 
 namespace gaussmap {
 
-/// What it costs to replace two clusters by their moment match S_12, Yguel 2009 eqs. (9), (10). May be negative: two
-/// clusters in the same place fill one ellipsoid instead of two.
+/// The cost of replacing two clusters by their moment match with covariance S_12, Yguel 2009 eqs. (9), (10).
+/// The cost can be negative: two clusters at the same place need only one ellipsoid.
 enum class MergeCost {
-  Volume,   ///< sqrt(det S_12) - sqrt(det S_1) - sqrt(det S_2): space that the map claims without having seen it
-  Runnalls  ///< ((w_1 + w_2) ln det S_12 - w_1 ln det S_1 - w_2 ln det S_2) / 2, w = weights: bound of the likelihood
-            ///< that is lost (Runnalls 2007); the moment match is by weight too, areas are not used
+  /// `sqrt(det S_12) - sqrt(det S_1) - sqrt(det S_2)` [m^D]: the space that the merged cluster covers and that no
+  /// point supports.
+  Volume,
+  /// `((w_1 + w_2) ln det S_12 - w_1 ln det S_1 - w_2 ln det S_2) / 2` [nat], w = weights: an upper bound of the
+  /// likelihood that the merge loses (Runnalls 2007). The moment match then uses the weights instead of the areas.
+  Runnalls
 };
 
+/// Options of agglomerate().
 struct AgglomerateOptions {
-  MergeCost cost = MergeCost::Volume;
-  std::size_t max_exact = 1000;        ///< up to so many data every pair is a candidate
-  std::size_t neighbours = 8;          ///< beyond, only pairs of so many nearest neighbours (by their means), >= 1 ...
-  std::size_t restricted_until = 500;  ///< ... until so many clusters are left; then every pair again, >= 1
+  MergeCost cost = MergeCost::Volume;  ///< which pair is merged next
+  std::size_t max_exact = 1000;        ///< with at most this number of input Gaussians, every pair is a candidate
+  /// Number of nearest neighbours of a cluster (by their means), >= 1. With more than max_exact input Gaussians, a pair
+  /// is a candidate only if one of its clusters is among these neighbours of the other.
+  std::size_t neighbours = 8;
+  std::size_t restricted_until = 500;  ///< with this number of clusters left, every pair is a candidate again, >= 1
 };
 
-/// The history of merging n data into one cluster. Node j < n is datum j, node n + t the union that merge t made.
+/// The sequence of merges that turns n Gaussians into one cluster. Node j < n is input Gaussian j. Node n + t is the
+/// union that merge t made.
 struct Dendrogram {
+  /// One merge of two nodes.
   struct Merge {
-    std::uint32_t first = 0;   ///< node; it holds the smallest datum of the two
-    std::uint32_t second = 0;  ///< node
-    double cost = 0.0;         ///< [m^D] or [nat]; not always rising
+    std::uint32_t first = 0;   ///< the node that holds the smallest input index of the two
+    std::uint32_t second = 0;  ///< the other node
+    double cost = 0.0;         ///< see MergeCost; costs do not always increase from merge to merge
   };
   std::size_t size = 0;       ///< n
-  std::vector<Merge> merges;  ///< n - 1 in the order they were made (n = 0: none)
+  std::vector<Merge> merges;  ///< n - 1 merges in the order they were made; empty if n = 0
 };
 
-/// Bottom-up clustering: merges the pair of least cost, again and again, until one cluster is left. Moment matching
-/// is weighted by `areas` (the surface that a datum stands for), so that the density of the sensor's points decides
-/// nothing. Equal costs: the pair with the smaller first, then the smaller second cluster, where clusters are ordered
-/// by their smallest datum; so data without ties give the same parts in any order. Single-threaded; about 1.5 n^2
-/// costs, computed in vector registers.
-/// Data: means finite, covariances positive definite, weights and areas > 0 and < 1e100, one area a datum; else
-/// std::invalid_argument or std::domain_error (covariance), naming the datum. n < 2^31.
+/// Clusters Gaussians bottom-up: merges the pair of smallest cost again and again, until one cluster is left.
+///
+/// The moment matching of MergeCost::Volume is weighted by `areas`: the surface that each Gaussian represents, in
+/// any unit. The density of the sensor's points therefore has no influence on the clusters.
+///
+/// Clusters are ordered by their smallest input index. Of pairs with equal cost, the pair with the smaller first
+/// cluster is merged, then the pair with the smaller second cluster. Input without ties gives the same clusters in any
+/// order. The function is single-threaded and evaluates about 1.5 n^2 costs in vector registers.
+///
+/// The means must be finite, the covariances positive definite, weights and areas positive and below 1e100, and n below
+/// 2^31. There must be one area per Gaussian. Throws std::domain_error for a covariance and std::invalid_argument for
+/// everything else; the message gives the index of the Gaussian or the name of the option.
 template <int D>
 GAUSSMAP_API Dendrogram agglomerate(const std::vector<Gaussian<D>>& data, const std::vector<double>& areas,
                                     const AgglomerateOptions& options = {});
 
-/// The partition into k parts that stood before the last k - 1 merges: n labels in [0, k), ordered by the smallest
-/// datum of each part. Partitions of one dendrogram are nested. Throws std::invalid_argument unless 1 <= k <= n;
-/// no data have no labels, whatever k.
+/// Returns the partition into k clusters: the state before the last k - 1 merges.
+///
+/// The result holds n labels in [0, k), in the order of the smallest input index of each cluster. The partitions of one
+/// dendrogram are nested. For n = 0 the result is empty for any k. Throws std::invalid_argument unless 1 <= k <= n.
 GAUSSMAP_API std::vector<int> labels(const Dendrogram& dendrogram, std::size_t k);
 
 }  // namespace gaussmap

@@ -9,65 +9,80 @@
 
 namespace gaussmap {
 
-/// The reference that Algorithm 2 puts at the datum of largest distortion (lines 5, 18, 21).
+/// The new cluster centre that Algorithm 2 places at the Gaussian of largest distortion (lines 5, 18, 21).
 enum class ClusterSeed {
-  ParentCovariance,  ///< the datum's mean with the covariance of the cluster that it leaves: takes its neighbours along
-  Datum,             ///< the datum itself, as printed: its own small covariance repels every other datum
+  /// The mean of the Gaussian, with the covariance of the cluster that it leaves. Its neighbours join the new cluster.
+  ParentCovariance,
+  /// The Gaussian itself, as in the paper. Its small covariance keeps all other Gaussians out of the new cluster.
+  Datum,
 };
 
+/// Options of KLKMeans and insertCluster().
 struct KLKMeansOptions {
-  int k = 8;                ///< clusters asked for, >= 1
-  int max_iterations = 50;  ///< of one run of k-means, >= 1
-  double tolerance = 1e-6;  ///< a run stops when the distortion falls by less than this fraction, >= 0
-  int max_swaps = 20;       ///< most rounds of the swap loop of Algorithm 2, >= 0 (0 = plain k-means)
-  ClusterSeed seed_rule = ClusterSeed::ParentCovariance;
-  std::uint64_t seed = 0;  ///< same input + same seed = same result
+  int k = 8;                ///< number of clusters, >= 1
+  int max_iterations = 50;  ///< maximum per run of k-means, >= 1
+  double tolerance = 1e-6;  ///< a run stops when the distortion falls by less than this fraction, in [0, 1)
+  int max_swaps = 20;       ///< maximum rounds of the swap loop of Algorithm 2, >= 0 (0 = plain k-means)
+  ClusterSeed seed_rule = ClusterSeed::ParentCovariance;  ///< the new centre in the swap loop and in insertCluster()
+  std::uint64_t seed = 0;                                 ///< same input + same seed = same result
 };
 
-/// A partition of n Gaussians.
+/// The result of k-means: a partition of n Gaussians.
 template <int D>
 struct KLClustering {
-  std::vector<Gaussian<D>> references;  ///< k' <= k, none empty; the moment match of its members each
+  std::vector<Gaussian<D>> references;  ///< k' <= k cluster centres, each the moment match of its members; none empty
   std::vector<int> labels;              ///< n, labels[i] in [0, k')
   double distortion = 0.0;              ///< sum_j alpha_j KL(z_j || w_label(j)) [nat], Yguel 2009 eq. (7)
-  int iterations = 0;                   ///< of k-means, all runs together, rejected swaps too
+  int iterations = 0;                   ///< of k-means, summed over all runs, including rejected swaps
   int swaps = 0;                        ///< accepted rounds of the swap loop
   bool converged = true;                ///< false: the run that gave this result stopped at max_iterations
 };
 
-/// Weighted k-means over Gaussians with the KL divergence as distance, Yguel 2009 sec. 5.2.1 after Davis & Dhillon
-/// 2006: each datum goes to the nearest reference under [8] (ties to the smaller label), each reference becomes the
-/// moment match [9], [10] of its members, until the labels stay or the distortion [7] hardly falls. A reference
-/// that loses its last member is dropped. Single-threaded and deterministic.
+/// Weighted k-means over Gaussians with the KL divergence as distance, Yguel 2009 sec. 5.2.1 (after Davis & Dhillon
+/// 2006).
 ///
-/// Data: weights > 0 and finite, means finite, covariances positive definite; else std::invalid_argument (weight,
-/// mean) or std::domain_error (covariance), naming the datum. No data give an empty result.
-/// The assignment is one n x F by F x k product, F = 1 + D + D (D + 1) / 2; its rounding is about
-/// 1e-16 (extent of the data / smallest standard deviation of a reference)^2 nat, wherever the data are.
+/// Each input Gaussian joins the nearest cluster centre under eq. (8); ties go to the smaller label. Each centre
+/// becomes the moment match of its members, eqs. (9), (10). The run ends when the labels stay the same or the
+/// distortion, eq. (7), falls by less than the tolerance. A centre that loses its last member is dropped.
+/// The algorithm is single-threaded and deterministic.
+///
+/// Weights must be positive and finite, means finite, and covariances positive definite. The functions throw
+/// std::invalid_argument for a weight or mean and std::domain_error for a covariance; the message gives the index of
+/// the Gaussian. Empty input gives an empty result.
+///
+/// One assignment is a product of an n x F and an F x k matrix, F = 1 + D + D (D + 1) / 2. Its rounding error is about
+/// 1e-16 (extent of the input / smallest standard deviation of a centre)^2 nat, also far from the origin.
 template <int D>
 class GAUSSMAP_API KLKMeans {
  public:
-  /// Throws std::invalid_argument, naming the option.
+  /// Checks the options. Throws std::invalid_argument if an option is out of range; the message names the option.
   explicit KLKMeans(const KLKMeansOptions& options = {});
 
-  /// Own start (drawn as in k-means++), then the swap loop of Algorithm 2. With k >= n each datum is its own cluster.
+  /// Clusters `data` from random initial centres (drawn as in k-means++) and then runs the swap loop of Algorithm 2.
+  /// If k >= n, each Gaussian is its own cluster.
   KLClustering<D> fit(const std::vector<Gaussian<D>>& data) const;
 
-  /// Plain k-means from given references, no swaps; `k` of the options is not used.
-  /// Throws std::invalid_argument if there are data but no references, and as above for the references.
+  /// Runs plain k-means on `data` from the given centres, without swaps. KLKMeansOptions::k is not used.
+  /// Also throws std::invalid_argument if there is input but no initial centre. The centres must satisfy the same
+  /// conditions as the input.
   KLClustering<D> run(const std::vector<Gaussian<D>>& data, const std::vector<Gaussian<D>>& initial_references) const;
 
  private:
   KLKMeansOptions options_;
 };
 
-/// One more cluster for a partition: Yguel 2009, Algorithm 2. K-means runs from the current references plus a seed at
-/// the datum of largest distortion (ClusterSeed); then the swap loop takes a reference from where it is needed least
-/// to the datum of largest distortion as long as that pays.
-/// - `current_references` are the k - 1 clusters that there are; none = start with one cluster for all.
-/// - The result has at most k clusters; no more than before if the data do not allow it (duplicates). Its distortion
-///   never exceeds that of the current references. With k >= n each datum becomes its own cluster, distortion 0.
-/// - options.k is not used. Data, references and errors as for KLKMeans.
+/// Adds one cluster to a partition, Yguel 2009, Algorithm 2.
+///
+/// K-means runs from the current centres and a new centre at the Gaussian of largest distortion (see ClusterSeed).
+/// While the distortion falls, the swap loop then moves the centre that is needed least to the Gaussian of largest
+/// distortion.
+///
+/// - `current_references` are the k - 1 current cluster centres. If there are none, the result is one cluster.
+/// - The result has at most k clusters. Duplicates in the input can prevent an additional cluster.
+/// - The distortion never exceeds that of the current centres.
+/// - If k >= n, each Gaussian becomes its own cluster, with distortion 0.
+///
+/// KLKMeansOptions::k is not used. Input and errors are the same as for KLKMeans.
 template <int D>
 GAUSSMAP_API KLClustering<D> insertCluster(const std::vector<Gaussian<D>>& data,
                                            const std::vector<Gaussian<D>>& current_references,

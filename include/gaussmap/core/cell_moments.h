@@ -9,23 +9,27 @@
 
 namespace gaussmap {
 
-/// A cell's side in quantisation steps: points snap to a lattice of side / 65536 (1.5 micrometres for 10 cm).
+/// Number of quantisation steps per side of a cell. A step is side / 65536 (1.5 micrometres for a side of 10 cm).
+/// Points are rounded to the lattice of these steps.
 inline constexpr std::int64_t kStepsPerCell = std::int64_t{1} << 16;
 
-/// Exact sums over the points of one cell, in integers, so that any order of points, any number of threads
-/// and any split into parts merged later give the same bytes. Offsets are counted from the cell's centre in
-/// steps, -32768 ... 32767: a product has at most 30 bits, so a cell holds up to 2^33 - 1 points. One more is refused:
-/// add() and += throw std::length_error and leave the sums as they were.
+/// Holds exact sums over the points of one cell, in integers.
+///
+/// The sums are bit-identical for any order of the points, any number of threads, and any split into parts that are
+/// merged later. An offset from the cell's centre lies in [-32768, 32767] steps, so a product of two has at most
+/// 30 bits. A cell therefore holds up to 2^33 - 1 points. For more points add() and operator+=() throw
+/// std::length_error and leave the sums unchanged.
 template <int D>
 struct GAUSSMAP_API CellMoments {
-  static constexpr int kProducts = D * (D + 1) / 2;
-  static constexpr std::int64_t kMaxPoints = (std::int64_t{1} << 33) - 1;
-  using Offset = std::array<std::int32_t, D>;
+  static constexpr int kProducts = D * (D + 1) / 2;                        ///< number of products per point
+  static constexpr std::int64_t kMaxPoints = (std::int64_t{1} << 33) - 1;  ///< maximum number of points per cell
+  using Offset = std::array<std::int32_t, D>;                              ///< point minus the cell's centre [steps]
 
-  std::int64_t count = 0;
+  std::int64_t count = 0;                         ///< number of points
   std::array<std::int64_t, D> sum{};              ///< sum of offsets [steps]
   std::array<std::int64_t, kProducts> product{};  ///< sum of products, upper triangle by rows: xx xy xz yy yz zz
 
+  /// Adds one point. Throws std::length_error if the cell is full.
   void add(const Offset& offset) {
     requireRoom(1);
     ++count;
@@ -37,7 +41,7 @@ struct GAUSSMAP_API CellMoments {
     }
   }
 
-  /// Sums of two disjoint sets of points of the same cell.
+  /// Adds the sums of other points of the same cell. Throws std::length_error if the total exceeds kMaxPoints.
   CellMoments& operator+=(const CellMoments& other) {
     requireRoom(other.count);
     count += other.count;
@@ -46,7 +50,7 @@ struct GAUSSMAP_API CellMoments {
     return *this;
   }
 
-  /// Takes away a part of the points.
+  /// Subtracts the sums of `part`. The points of `part` must be among the points of this cell.
   CellMoments& operator-=(const CellMoments& part) {
     count -= part.count;
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] -= part.sum[i];
@@ -54,23 +58,29 @@ struct GAUSSMAP_API CellMoments {
     return *this;
   }
 
-  /// Throws std::length_error if so many more points are too many.
+  /// Throws std::length_error if the cell cannot hold `more` additional points.
   void requireRoom(std::int64_t more) const {
     if (more > kMaxPoints - count) throwTooMany();
   }
 
+  /// Returns true if all sums are equal.
   friend bool operator==(const CellMoments& a, const CellMoments& b) {
     return a.count == b.count && a.sum == b.sum && a.product == b.product;
   }
+  /// Returns true if any sum differs.
   friend bool operator!=(const CellMoments& a, const CellMoments& b) { return !(a == b); }
 
-  /// Sample mean about the cell's centre, D x 1 [m]; `side` = the cell's side [m]; count > 0.
+  /// Returns the sample mean relative to the cell's centre, D x 1 [m]. `side` is the side of the cell [m].
+  /// `count` must be positive.
   Vector<D> mean(double side) const;
-  /// Sample covariance (divided by n), D x D [m^2], possibly singular; count > 0.
+  /// Returns the sample covariance (divided by n), D x D [m^2]. The covariance can be singular. `side` is the side of
+  /// the cell [m]. `count` must be positive.
   Matrix<D> covariance(double side) const;
-  /// Mean about the cell's centre, covariance + noise^2 I (positive definite for noise > 0), weight = count.
-  /// The floor is added, not clamped: moment matching of cells then equals the moments of all their points
-  /// plus the same floor, at every scale.
+  /// Returns the Gaussian of the cell, with the mean relative to the cell's centre.
+  ///
+  /// The covariance is the sample covariance + noise^2 I, which is positive definite for noise > 0 [m]. The weight is
+  /// `count`. The noise floor is added to the eigenvalues; the eigenvalues are not clamped. Moment matching of cells
+  /// then gives, at every scale, the moments of all their points plus the same floor.
   Gaussian<D> gaussian(double side, double noise) const;
 
  private:

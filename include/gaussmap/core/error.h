@@ -9,9 +9,11 @@
 
 namespace gaussmap {
 
-/// A file that cannot be used, and why: "path: what", with the line or the byte where that helps.
+/// Reports a file that cannot be used. The message has the form "path: reason". Where helpful, the reason gives the
+/// line or the byte.
 class GAUSSMAP_API FileError : public std::runtime_error {
  public:
+  /// Makes the message "path: what".
   FileError(const std::filesystem::path& path, const std::string& what)
       : std::runtime_error(path.string() + ": " + what) {}
 };

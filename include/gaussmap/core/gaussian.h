@@ -9,18 +9,23 @@
 
 namespace gaussmap {
 
-/// A small seeded generator (SplitMix64) that gives the same numbers with every standard library: the
-/// distributions of <random> do not. Cheap to make, so that each cell or cluster can have its own.
+/// Generates pseudo-random numbers from a seed (SplitMix64).
+///
+/// The numbers are the same with every standard library, unlike those of the standard distributions. Construction is
+/// cheap, so each cell or cluster can have its own generator.
 class GAUSSMAP_API Random {
  public:
+  /// Starts the sequence that belongs to `seed`.
   explicit Random(std::uint64_t seed) : state_(seed) {}
 
-  /// A generator for one part of a job: independent of all other parts, whatever the order they run in.
+  /// Returns the generator of one part of a job. It is independent of the generators of all other parts, so the parts
+  /// can run in any order.
   static Random forPart(std::uint64_t seed, std::uint64_t part) {
     Random mixed(seed ^ (part * 0x9E3779B97F4A7C15ull));
     return Random(mixed.bits() + part);
   }
 
+  /// Returns 64 random bits.
   std::uint64_t bits() {
     std::uint64_t z = (state_ += 0x9E3779B97F4A7C15ull);
     z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
@@ -28,16 +33,16 @@ class GAUSSMAP_API Random {
     return z ^ (z >> 31);
   }
 
-  /// Uniform in [0, 1).
+  /// Returns a uniform random number in [0, 1).
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }
 
-  /// Uniform in {0, ..., n - 1}; n > 0. The bias of the multiplication is below n / 2^64.
+  /// Returns a uniform random number in {0, ..., n - 1}, for n > 0. The bias of the multiplication is below n / 2^64.
   std::uint64_t below(std::uint64_t n) {
     const std::uint64_t high = bits() >> 32, low = bits() >> 32;
     return ((high * n) + ((low * n) >> 32)) >> 32;
   }
 
-  /// Standard normal (Marsaglia's polar method).
+  /// Returns a standard normal random number (Marsaglia's polar method).
   double normal() {
     if (has_spare_) {
       has_spare_ = false;
@@ -61,73 +66,87 @@ class GAUSSMAP_API Random {
   bool has_spare_ = false;
 };
 
-/// Even sizes are stored unaligned: the alignment Eigen would choose depends on the user's -m flags,
-/// and a library built without AVX could not share such a type with a program built with it.
+/// Eigen's storage option of Vector and Matrix. Even sizes are stored unaligned, because Eigen's alignment depends on
+/// the -m flags of the compiler. A library built without AVX could otherwise not share these types with a program
+/// built with AVX.
 template <int D>
 inline constexpr int kStorage = D % 2 == 0 ? int(Eigen::DontAlign) : int(Eigen::AutoAlign);
+/// A column vector of D doubles.
 template <int D>
 using Vector = Eigen::Matrix<double, D, 1, kStorage<D>>;
+/// A D x D matrix of doubles.
 template <int D>
 using Matrix = Eigen::Matrix<double, D, D, kStorage<D>>;
 
-/// A weighted Gaussian, the one value every stage hands to the next. D = 3 in space, D = 2 in the plane.
+/// A weighted Gaussian: the value that the stages of the library pass on. D = 3 in space, D = 2 in the plane.
 template <int D>
 struct GAUSSMAP_API Gaussian {
   Vector<D> mean = Vector<D>::Zero();     ///< mu, D x 1 [m], map frame unless a function says otherwise
   Matrix<D> cov = Matrix<D>::Identity();  ///< Sigma, D x D [m^2], symmetric positive definite
-  double weight = 0.0;                    ///< alpha > 0, how many points it stands for
+  double weight = 0.0;                    ///< alpha > 0, number of points that the Gaussian represents
 };
 
-/// KL(p || q) [nat] = (tr(Sq^-1 Sp) + (mq-mp)' Sq^-1 (mq-mp) - D + ln |Sq|/|Sp|) / 2, Yguel 2009 eq. (8).
-/// Never negative. Not symmetric, not a metric. Throws std::domain_error if a covariance is not positive definite.
+/// Returns the Kullback-Leibler divergence of p from q [nat], Yguel 2009 eq. (8).
+///
+/// `KL(p || q) = (tr(Sq^-1 Sp) + (mq-mp)' Sq^-1 (mq-mp) - D + ln |Sq|/|Sp|) / 2`, with m = mean and S = covariance.
+/// The divergence is never negative. It is not symmetric and not a metric.
+/// Throws std::domain_error if a covariance is not positive definite.
 template <int D>
 GAUSSMAP_API double klDivergence(const Gaussian<D>& p, const Gaussian<D>& q);
 
-/// Squared Mahalanobis distance (x-mu)' Sigma^-1 (x-mu), no unit. Throws std::domain_error as above.
+/// Returns the squared Mahalanobis distance `(x-mu)' Sigma^-1 (x-mu)` of a point x from a Gaussian, without unit.
+/// Throws std::domain_error if the covariance is not positive definite.
 template <int D>
 GAUSSMAP_API double mahalanobisSquared(const Vector<D>& point, const Gaussian<D>& gaussian);
 
-/// ln N(point; mu, Sigma), the normalised density [1/m^D], weight not counted. Throws std::domain_error as above.
+/// Returns the logarithm of the normalised density, `ln N(point; mu, Sigma)`, with the density in 1/m^D. The weight is
+/// not used. Throws std::domain_error if the covariance is not positive definite.
 template <int D>
 GAUSSMAP_API double logDensity(const Vector<D>& point, const Gaussian<D>& gaussian);
 
-/// ln det Sigma. Throws std::domain_error as above.
+/// Returns `ln det Sigma` of a covariance Sigma [m^2]. Throws std::domain_error if it is not positive definite.
 template <int D>
 GAUSSMAP_API double logDeterminant(const Matrix<D>& cov);
 
-/// Moment matching: the mixture's total weight, mean and covariance in one Gaussian, Yguel 2009 eqs. (9), (10).
-/// Summed about the mean, so that far means lose nothing. Throws std::invalid_argument without a positive weight.
+/// Returns the moment match of a mixture: one Gaussian with the mixture's total weight, mean and covariance,
+/// Yguel 2009 eqs. (9), (10).
+///
+/// The sums are relative to the first mean, so they lose no precision far from the origin.
+/// Throws std::invalid_argument if the total weight is not positive.
 template <int D>
 GAUSSMAP_API Gaussian<D> merge(const std::vector<Gaussian<D>>& parts);
 
-/// The axes of a Gaussian's ellipsoid.
+/// The principal axes of a Gaussian's covariance ellipsoid.
 template <int D>
 struct GAUSSMAP_API PrincipalAxes {
   Vector<D> variances;   ///< eigenvalues [m^2], ascending
-  Matrix<D> directions;  ///< unit eigenvectors, one a column, in the order of the eigenvalues
+  Matrix<D> directions;  ///< unit eigenvectors, one per column, in the order of the eigenvalues
 
-  /// Direction of least variance: the surface normal of a flat cluster (sign arbitrary but repeatable).
+  /// Returns the direction of smallest variance: the surface normal of a flat cluster. Its sign is arbitrary, but the
+  /// same input gives the same sign.
   Vector<D> normal() const { return directions.col(0); }
-  /// 1 for an ideal plane (a line in 2-D), 0 for a sphere: (s1 - s0) / s_max, s = standard deviations ascending.
+  /// Returns `(s1 - s0) / s_max`, with s = standard deviations in ascending order: 1 for an ideal plane (an ideal line
+  /// in 2-D), 0 for a sphere.
   double flatness() const;
-  /// 1 for an ideal line, 0 for a disc or sphere: (s_max - s_next) / s_max.
+  /// Returns `(s_max - s_next) / s_max`, with s = standard deviations: 1 for an ideal line, 0 for a disc or a sphere.
   double linearity() const;
 };
 
-/// Eigen-decomposition of the covariance. Throws std::domain_error if it is not finite.
+/// Returns the eigendecomposition of a Gaussian's covariance. Throws std::domain_error if the covariance is not finite.
 template <int D>
 GAUSSMAP_API PrincipalAxes<D> principalAxes(const Gaussian<D>& gaussian);
 
-/// Draws points from one Gaussian; the factorisation is done once.
+/// Draws random points from one Gaussian. The covariance is factorised once, in the constructor.
 template <int D>
 class GAUSSMAP_API GaussianSampler {
  public:
-  /// Throws std::domain_error if the covariance is not positive definite.
+  /// Factorises the covariance. Throws std::domain_error if the covariance is not positive definite.
   explicit GaussianSampler(const Gaussian<D>& gaussian);
-  /// One point, map frame.
+  /// Returns one random point, in the frame of the Gaussian [m].
   Vector<D> operator()(Random& random) const { return fromStandard(standard(random)); }
-  /// D independent standard normals: |z| is the Mahalanobis distance of fromStandard(z).
+  /// Returns D independent standard normal numbers z. |z| is the Mahalanobis distance of the point fromStandard(z).
   static Vector<D> standard(Random& random);
+  /// Returns the point at the standardised coordinates `z`, in the frame of the Gaussian [m].
   Vector<D> fromStandard(const Vector<D>& z) const { return mean_ + factor_ * z; }
 
  private:

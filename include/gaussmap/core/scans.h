@@ -14,116 +14,125 @@
 
 namespace gaussmap {
 
-/// A handful of points, one array an axis: what readers fill and what MomentGrid counts. Small enough to
-/// stay in the first-level cache, so that a scan is never copied as a whole.
+/// A block of up to kCapacity points, with one array per axis. Readers fill blocks, and MomentGrid counts their points.
+/// A block fits into the first-level cache, so no scan has to be copied as a whole.
 template <int D>
 struct PointBlock {
-  static constexpr std::size_t kCapacity = 512;
-  std::size_t size = 0;
-  alignas(64) double coordinate[D][kCapacity];  ///< [m]
+  static constexpr std::size_t kCapacity = 512;  ///< maximum number of points
+  std::size_t size = 0;                          ///< number of points
+  alignas(64) double coordinate[D][kCapacity];   ///< coordinate[axis][point] [m]
 };
 
-/// Points where they lie in somebody's records: x, y, z as floats one after the other [m], a record every `stride`
-/// floats.
+/// A view of points in records that the caller owns. Each record holds x, y and z as consecutive floats [m].
 struct PointsView {
-  const float* first = nullptr;
-  std::size_t count = 0;
-  std::size_t stride = 3;
+  const float* first = nullptr;  ///< x of the first point
+  std::size_t count = 0;         ///< number of points
+  std::size_t stride = 3;        ///< floats from one record to the next
 
+  /// Returns the address of x, y and z of point `i`.
   const float* operator[](std::size_t i) const { return first + i * stride; }
 };
 
-/// R p + t for every point of a block, in place, NaN points stay NaN. The quaternion must have unit length.
+/// Replaces every point p of a block by `R p + t`. NaN points stay NaN. The quaternion must have unit length.
 GAUSSMAP_API void transform(const Pose& pose, PointBlock<3>& block);
 
-/// The frame that the points of scans are given in.
+/// The frame in which the points of scans are given.
 enum class ScanFrame {
-  Sensor,  ///< the sensor's: the pose moves points into the map
-  Map      ///< the map's: the pose says only where the sensor was
+  Sensor,  ///< sensor frame: the pose transforms the points into the map frame
+  Map      ///< map frame: the pose gives only the position of the sensor
 };
 
-/// What is known of a scan before its points are read.
+/// Describes a scan before its points are read.
 struct ScanInfo {
-  std::string name;            ///< for messages: the path of a file, or "scan 12"
+  std::string name;            ///< used in messages: the path of a file, or "scan 12"
   Pose pose;                   ///< sensor frame to map frame, unit quaternion
-  std::optional<double> time;  ///< [s]
+  std::optional<double> time;  ///< time of the scan [s]; std::nullopt if unknown
 };
 
 /// One scan in memory.
 struct Scan {
-  std::vector<Eigen::Vector3d> points;        ///< n [m], sensor frame, NaN where the sensor saw nothing
+  std::vector<Eigen::Vector3d> points;        ///< n [m], sensor frame, NaN for beams without a return
   Pose pose;                                  ///< sensor frame to map frame, unit quaternion
-  int columns = 0;                            ///< points per row of an organised cloud; 0: in no order
-  std::optional<double> time = std::nullopt;  ///< [s]
+  int columns = 0;                            ///< points per row of an organised cloud; 0: not organised
+  std::optional<double> time = std::nullopt;  ///< time of the scan [s]; std::nullopt if unknown
 };
 
-/// True for a measured point [m, sensor frame]: it is finite, and not at the sensor itself, which is how some drivers
-/// mark "no return".
+/// Returns true if a point [m, sensor frame] is a measurement: it is finite and does not lie at the sensor itself.
+/// Some drivers write points at the sensor for "no return".
 inline bool isReturn(const Eigen::Vector3d& point) {
   return point.allFinite() && !point.isZero(0.0);
 }
 
-/// Where the points of scans went; the four kinds add up to `read`.
+/// Counts the accepted and the dropped points of scans. The other four counts add up to `read`.
 struct GAUSSMAP_API PointCounts {
-  std::int64_t read = 0;
-  std::int64_t accepted = 0;
-  std::int64_t non_finite = 0;
-  std::int64_t at_sensor = 0;     ///< at range 0, see isReturn()
-  std::int64_t beyond_range = 0;  ///< farther from the sensor than the greatest range asked for
+  std::int64_t read = 0;          ///< all points
+  std::int64_t accepted = 0;      ///< points that were used
+  std::int64_t non_finite = 0;    ///< dropped: a coordinate is NaN or infinite
+  std::int64_t at_sensor = 0;     ///< dropped: range 0, see isReturn()
+  std::int64_t beyond_range = 0;  ///< dropped: farther from the sensor than max_range
 
+  /// Adds the counts of other points.
   PointCounts& operator+=(const PointCounts& other);
 };
 
-/// The points of one scan, block by block. All functions are thread-safe.
+/// Reads the points of one scan, block by block. All functions are thread-safe.
 class GAUSSMAP_API ScanReader {
  public:
   virtual ~ScanReader() = default;
 
-  /// Number of points, the invalid ones of an organised cloud included.
+  /// Returns the number of points, including the invalid points of an organised cloud.
   virtual std::size_t size() const = 0;
-  /// Points per row of an organised cloud; 0: in no order.
+  /// Returns the number of points per row of an organised cloud, or 0 if the cloud is not organised.
   virtual int columns() const { return 0; }
-  /// Fills the block with points first, first + 1 ... as far as the block or the scan goes [m], in the frame of the
-  /// scans, NaN and infinity as they are. Behind the last point the block is empty. Throws FileError for damaged data.
+  /// Fills `block` with the points `first`, `first` + 1 and so on, until the block is full or the scan ends.
+  ///
+  /// The points [m] are in the frame of Scans::frame(). NaN and infinite values are kept. The block is empty if `first`
+  /// is not less than size(). Throws FileError if the data are damaged.
   virtual void read(std::size_t first, PointBlock<3>& block) const = 0;
-  /// To be called after the last read(): throws FileError if a file was cut off while it was read.
+  /// Throws FileError if the file was truncated while it was read. Call this function after the last read().
   virtual void requireWhole() const {}
 
-  /// Names of other numbers that every point has, such as "intensity"; they may be none.
+  /// Returns the names of the additional values of each point, for example "intensity". The list can be empty.
   virtual std::vector<std::string> valueNames() const { return {}; }
-  /// size() numbers. Throws std::out_of_range if there is no value of that name.
+  /// Returns the value `name` of all points, size() numbers. Throws std::out_of_range if no value has this name.
   virtual std::vector<double> values(const std::string& name) const;
 };
 
-/// Scans with poses, wherever they are: PcdScans are files, MemoryScans are in memory, and any program can bring its
-/// own. What builds, maps on line, cleans or measures takes scans through this interface.
-/// All functions are thread-safe: scans are read in parallel.
+/// A list of scans with poses: the interface through which the library takes scans.
+///
+/// Building, online mapping, removal of moving points and evaluation all use this interface. PcdScans holds files,
+/// MemoryScans holds scans in memory, and a program can add its own implementation.
+/// All functions are thread-safe, because the library reads scans in parallel.
 class GAUSSMAP_API Scans {
  public:
   virtual ~Scans() = default;
 
+  /// Returns the number of scans.
   virtual std::size_t size() const = 0;
-  /// Throws std::out_of_range if there is no such scan, as all functions here.
+  /// Returns the name, pose and time of a scan. Throws std::out_of_range if `index` is not less than size().
   virtual ScanInfo info(std::size_t index) const = 0;
+  /// Returns the frame of the points of all scans.
   virtual ScanFrame frame() const { return ScanFrame::Sensor; }
-  /// Throws FileError if a file cannot be read.
+  /// Returns a reader of the points of a scan. Throws std::out_of_range if `index` is not less than size(), and
+  /// FileError if a file cannot be read.
   virtual std::unique_ptr<ScanReader> open(std::size_t index) const = 0;
 
-  /// A whole scan at once, in the sensor's frame even if the points are given in the map frame. Throws as open() and
-  /// ScanReader::read().
+  /// Returns a whole scan, always in the sensor frame, even if frame() is ScanFrame::Map.
+  /// Throws like open() and ScanReader::read(), and FileError if the file was truncated.
   Scan read(std::size_t index) const;
 };
 
-/// Scans in memory, for a program that has them from elsewhere.
+/// Holds scans in memory, for a program that does not read them from files.
 class GAUSSMAP_API MemoryScans : public Scans {
  public:
-  /// `frame`: that of the points of all scans.
+  /// Makes an empty list. `frame` is the frame of the points of all scans.
   explicit MemoryScans(ScanFrame frame = ScanFrame::Sensor) : frame_(frame) {}
+  /// Makes a list of the given scans. Throws like add().
   explicit MemoryScans(std::vector<Scan> scans, ScanFrame frame = ScanFrame::Sensor);
 
-  /// Adds a scan. Throws std::invalid_argument, saying why, if its pose has a fault (poseFault()).
+  /// Adds a scan. Throws std::invalid_argument if the pose has a fault; the message gives the fault (see poseFault()).
   void add(Scan scan);
-  /// The same from floats, which are copied.
+  /// Adds a scan from floats and copies them. Throws like the other add().
   void add(const PointsView& points, const Pose& pose, std::optional<double> time = std::nullopt);
 
   std::size_t size() const override { return scans_.size(); }

@@ -9,29 +9,34 @@
 
 namespace gaussmap {
 
+/// Options of compress().
 struct CompressOptions {
-  std::size_t samples = 100;  ///< of every Gaussian that is tested, >= 1
-  std::uint64_t seed = 1;     ///< of these; same map + same seed = same bytes, at any number of threads
-  int threads = 0;            ///< 0 = all
+  std::size_t samples = 100;  ///< per tested Gaussian, >= 1
+  std::uint64_t seed = 1;     ///< same map + same seed = bit-identical result
+  int threads = 0;            ///< 0 = all cores
 };
 
-/// Deletes detail where it is not needed, Yguel 2009 sec. 5.4: from the coarsest scale down, everything finer under a
-/// coarse cell goes if the cell's own Gaussians are good enough; else its children are looked at. What stays, stays as
-/// it was to the last bit; a map of which nothing can go comes back as it is. See leaves() for what then stands where.
+/// Deletes detail where the coarser cells are good enough, Yguel 2009 sec. 5.4.
 ///
-/// Good enough, both ways, with the means of the finest Gaussians of the given map as the data:
-/// - what the cell says is there: of each of its Gaussians at least 95 % of the samples (`samples` of them, inside the
-///   cell) lie within max_error [m] of a datum, wherever that is;
-/// - what is there, the cell says: every datum under it lies within max_error of the ellipsoid that holds 95 % of the
-///   mass of one of its Gaussians (0 inside: a Gaussian too fat for its data fails by its samples).
+/// The function works from the coarsest scale down. If the Gaussians of a coarse cell are good enough, everything below
+/// this cell is deleted. Otherwise its children are tested. Cells that are kept do not change. If nothing can be
+/// deleted, the map is returned unchanged. See leaves() for the result.
 ///
-/// So this holds for the result: of sampleMap()'s samples of each Gaussian in a coarse cell that stands alone
-/// ({samples = 0, at_least = options.samples, seed, bounds = Cell}) at least 95 % are within max_error of the old data,
-/// of all of these together hence too; and no old datum is farther than max_error from the 95 % ellipsoids of the
-/// Gaussians that stand for it now. Other samples show the same up to chance. Neighbouring data are as far apart as
-/// finest cells: a max_error below half their side deletes next to nothing. Throws std::invalid_argument unless
-/// max_error is a positive number of metres and samples > 0, and if the map is compressed already: what was deleted is
-/// not there to measure against.
+/// The reference is the means of the finest Gaussians of the given map. A cell is good enough if both criteria hold:
+/// - For each of its Gaussians, at least 95 % of the samples inside the cell lie within max_error [m] of a reference
+///   mean, in this cell or another. There are `samples` samples per Gaussian.
+/// - Every reference mean below the cell lies within max_error of the 95 % ellipsoid of one of its Gaussians. The
+///   distance is 0 inside the ellipsoid; an ellipsoid that is too wide fails the first criterion.
+///
+/// The result therefore has two properties:
+/// - At least 95 % of the samples of each Gaussian in a coarse leaf cell lie within max_error of a reference mean. This
+///   holds exactly for sampleMap() with `samples` = 0, `at_least` = CompressOptions::samples, the same seed and
+///   SampleBounds::Cell. For other samples it holds with random deviations.
+/// - Every reference mean lies within max_error of the 95 % ellipsoid of a Gaussian that now represents it.
+///
+/// Adjacent reference means are about one finest cell apart. A max_error below half the side of a finest cell therefore
+/// deletes almost nothing. Throws std::invalid_argument if max_error is not positive and finite or `samples` is 0. Also
+/// throws it if the map is already compressed, because the deleted detail is missing as a reference.
 GAUSSMAP_API GaussianMap<3> compress(GaussianMap<3> map, double max_error, const CompressOptions& options = {});
 
 }  // namespace gaussmap

@@ -9,18 +9,24 @@
 
 namespace gaussmap {
 
-/// The part of a map whose Gaussians `isInside` takes, asked for the mean of each that has nothing finer under it
-/// [m, map frame]. They stay as they are, exact moments too; a coarse cluster of which a part stays becomes the moment
-/// match of that. Parts that share nothing merge to the finest scale of the whole again (mergeMaps()).
+/// Returns the part of a map that lies inside a region.
+///
+/// The function `isInside` gets the mean of each Gaussian in a leaf cell [m, map frame]. Gaussians inside are kept
+/// unchanged, with their exact moments. A coarse cluster with some of its children outside becomes the moment match of
+/// the remaining children. If a map is cut into disjoint parts, mergeMaps() restores the finest scale of the whole map.
 template <int D>
 GAUSSMAP_API GaussianMap<D> crop(const GaussianMap<D>& map, const std::function<bool(const Vector<D>&)>& isInside);
 
-/// Is (x, y) of a point inside a polygon, at any height? Corners in order, either way round; where its sides cross, by
-/// the even-odd rule. Polygons that share a side share no point.
-/// Throws std::invalid_argument if there are fewer than three corners or one is not finite.
+/// A polygon in the xy plane. A point at any height is inside if its (x, y) is inside.
+///
+/// The corners are in order, clockwise or counter-clockwise. If sides cross, the even-odd rule applies. Two polygons
+/// that share a side have no point in common.
 class GAUSSMAP_API Polygon {
  public:
+  /// Makes a polygon from its corners [m]. Throws std::invalid_argument if there are fewer than three corners or a
+  /// corner is not finite.
   explicit Polygon(std::vector<Vector<2>> corners);
+  /// Returns true if (x, y) lies inside the polygon [m].
   bool contains(double x, double y) const;
 
  private:

@@ -8,22 +8,28 @@
 
 namespace gaussmap {
 
+/// Options of simplify().
 struct SimplifyOptions {
   MergeCost merge_cost = MergeCost::Volume;  ///< which pair of clusters is merged next
   int threads = 0;                           ///< 0 = all cores
 };
 
-/// Fewer Gaussians, Yguel 2009 sec. 5.4: clusters of a cell are merged where it costs least, summed over the scale,
-/// until there are as few as the budget says; at the finest scale too where its cells hold several. No finer scale is
-/// needed, whatever the map still has: compressed and final maps, maps of one scale. What is linked to merged clusters
-/// is linked to their union, so that coarse clusters stay the moment matches of what they represent. A cell keeps one
-/// Gaussian at least; exact moments stay.
+/// Reduces the number of Gaussians of a map to a budget, Yguel 2009 sec. 5.4.
 ///
-/// MaxError measures the distances from samples of a scale to those of the finest that the given map has (leaves()),
-/// and bisects to half a percent. A scale that is farther away already stays as it is and is listed in `not_reached`.
-/// The result has no curves. Throws std::invalid_argument, naming the option, for a budget out of range, a scale that
-/// the map does not have, fewer Gaussians than a scale has cells, and MaxBytes that one Gaussian per cell exceeds
-/// (naming the bytes that it takes).
+/// Clusters of the same cell are merged where the cost is smallest over the whole scale, until the budget is met. This
+/// includes the finest scale, if its cells hold several Gaussians. No finer scale is needed, so the function also
+/// accepts compressed maps, final maps and maps of one scale. The children of merged clusters become children of the
+/// union. Coarse clusters thus stay the moment matches of their children. Every cell keeps at least one Gaussian, and
+/// exact moments are kept.
+///
+/// With MaxError, distances are measured from samples of a scale to samples of the leaves of the given map. The number
+/// of Gaussians is found by bisection to within 0.5 %. A scale whose error is already larger is not changed and is
+/// listed in RefineResult::not_reached. The result has no error curves.
+///
+/// Throws std::invalid_argument in these cases:
+/// - The budget is out of range; the message names the option.
+/// - The map does not have a listed scale, or a limit is below the number of cells of its scale.
+/// - MaxBytes: one Gaussian per cell exceeds the limit; the message gives the bytes needed.
 template <int D>
 GAUSSMAP_API RefineResult<D> simplify(GaussianMap<D> map, const Budget& budget, const SimplifyOptions& options = {});
 

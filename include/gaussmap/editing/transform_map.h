@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
 
 #include "gaussmap/clustering/agglomerate.h"
@@ -11,49 +10,44 @@
 
 namespace gaussmap {
 
-/// Covariance of a pose in D dimensions, 6 x 6 or 3 x 3: of the translation [m], then of a small rotation [rad] about
-/// the target's axes (x y z, or the plane's normal) through the origin of what is moved.
-template <int D>
-using PoseCovariance = Eigen::Matrix<double, D*(D + 1) / 2, D*(D + 1) / 2, Eigen::DontAlign>;
-
-/// p_target = R p + t.
-template <int D>
-struct GAUSSMAP_API RigidMotion {
-  Matrix<D> rotation = Matrix<D>::Identity();   ///< R, orthogonal, determinant 1
-  Vector<D> translation = Vector<D>::Zero();    ///< t [m]
-  std::optional<PoseCovariance<D>> covariance;  ///< how well R and t are known; nothing: exactly
-
-  RigidMotion inverse() const;
-};
-
-/// The same as a pose of unit quaternion.
-GAUSSMAP_API RigidMotion<3> rigidMotion(const Pose& pose);
-
+/// Options of transformMap().
 struct TransformOptions {
-  std::optional<MapOptions> grid;            ///< of the result; nothing: that of the map
-  MergeCost merge_cost = MergeCost::Volume;  ///< where clusters of a coarse cell have to become fewer
-  int threads = 0;                           ///< 0 = all; never shows in the result
+  std::optional<MapOptions> grid;            ///< grid of the result; std::nullopt: the grid of the map
+  std::optional<PoseCovariance> covariance;  ///< of the motion; std::nullopt: the motion is exact
+  MergeCost merge_cost = MergeCost::Volume;  ///< which pair of clusters of a coarse cell is merged next
+  int threads = 0;                           ///< 0 = all cores
 };
 
-/// A map moved into another frame, and into another grid if one is given.
+/// Transforms a map into another frame, and resamples it if a grid is given. `motion`: p_target = R p + t.
 ///
-/// Finest scale. Every Gaussian is moved and sorted into the cell of its mean, where it stays for itself: a cell may
-/// hold several then, and moving back gives every mean and every weight of the scale again. A covariance of the motion
-/// is added, as it acts at the mean. In cells of another side Gaussians that meet become one; one that comes from a
-/// larger cell is halved before, along its long axis, as long as it is longer than a cell there (uniform: sqrt(12)
-/// standard deviations) and its halves lie in different cells. All of this keeps weight, mean and covariance of what is
-/// there.
+/// Finest scale: Every Gaussian is transformed and sorted into the cell that contains its new mean. Gaussians that
+/// share a cell are not merged, so the inverse motion restores all means and weights. The covariance of the motion is
+/// propagated to each mean and added to the covariance of the Gaussian.
 ///
-/// Coarse scales of the same grid: clusters of scale 1 are cut at the borders of the new cells, then merged within them
-/// (agglomerate()) where it costs least, until there are as many as before, one a cell at least; coarser scales are
-/// made anew from what is below, as many as before. In another grid, as many a cell as before (refine()). All are
-/// exact moment matches.
+/// Finest scale in cells of another side: The Gaussians of a cell are merged into one. Before, a Gaussian from a larger
+/// cell is halved along its long axis. This repeats while it is longer than a cell and its halves lie in different
+/// cells; its length is that of a uniform rod, sqrt(12) standard deviations. Halving and merging keep the total weight,
+/// mean and covariance.
 ///
-/// The identity gives the same map. Otherwise no exact moments are left: the result takes no more scans.
-/// Throws std::invalid_argument for a rotation that is none, a covariance that is not finite, symmetric and positive
-/// semi-definite, options of no grid, and a compressed map; std::out_of_range for a mean too far for the cells.
+/// Coarse scales in the same grid: The clusters of scale 1 are cut at the borders of the new cells. agglomerate() then
+/// merges the cheapest pairs within the cells, until the number of clusters is as before, but at least one per cell.
+/// The coarser scales are rebuilt from the scale below, with the number of clusters as before.
+///
+/// Coarse scales in another grid: refine() rebuilds them with the same number of clusters per cell as before. In both
+/// cases all clusters are exact moment matches.
+///
+/// The identity returns the same map. Any other result has no exact moments and accepts no more scans. For D = 2, only
+/// x, y and the rotation about z of the covariance are used.
+///
+/// Throws std::invalid_argument in these cases:
+/// - The pose has a fault (see poseFault()).
+/// - D = 2 and the pose is not planar (z = 0, rotation about z).
+/// - The covariance is not finite, symmetric and positive semi-definite.
+/// - The options of the grid are not usable, or the map is compressed.
+///
+/// Throws std::out_of_range if a mean lies beyond the range of the cell indices.
 template <int D>
-GAUSSMAP_API GaussianMap<D> transformMap(const GaussianMap<D>& map, const RigidMotion<D>& motion,
+GAUSSMAP_API GaussianMap<D> transformMap(const GaussianMap<D>& map, const Pose& motion,
                                          const TransformOptions& options = {});
 
 }  // namespace gaussmap

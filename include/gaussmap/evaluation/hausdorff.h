@@ -14,89 +14,100 @@
 
 namespace gaussmap {
 
-/// A set of distances in a few numbers [m]. Quantiles by nearest rank: q95 is the smallest of the distances that
-/// at least 95 % of them do not exceed, the ceil(0.95 n)-th in ascending order.
+/// A set of distances, summarised in a few numbers [m]. Quantiles are by nearest rank: q95 is the ceil(0.95 n)-th
+/// distance in ascending order.
 struct DistanceSummary {
-  double max = 0.0;
-  double q99 = 0.0;
-  double q95 = 0.0;
-  double mean = 0.0;
-  double rms = 0.0;
+  double max = 0.0;       ///< largest distance
+  double q99 = 0.0;       ///< 99 % quantile
+  double q95 = 0.0;       ///< 95 % quantile
+  double mean = 0.0;      ///< mean
+  double rms = 0.0;       ///< root of the mean square
   std::size_t count = 0;  ///< n
 };
 
-/// Throws std::invalid_argument if there are no distances.
+/// Returns the summary of a set of distances. Throws std::invalid_argument if there are no distances.
 GAUSSMAP_API DistanceSummary summarise(std::vector<double> distances);
 
-/// Distances between two sets of points, both directions apart.
+/// The distances between two sets of points, in both directions.
 struct HausdorffResult {
-  DistanceSummary forward;   ///< from each point of a to its nearest of b
-  DistanceSummary backward;  ///< from each point of b to its nearest of a
-  /// The Hausdorff distance [m]: the larger of the two maxima.
+  DistanceSummary forward;   ///< from each point of a to the nearest point of b
+  DistanceSummary backward;  ///< from each point of b to the nearest point of a
+  /// Returns the Hausdorff distance [m]: the larger of the two maxima.
   double hausdorff() const { return forward.max > backward.max ? forward.max : backward.max; }
 };
 
-/// The distances behind a result, one by one.
+/// The single distances behind a result.
 struct PointDistances {
-  std::vector<Vector<3>> subject;  ///< n points [m]: the cloud that was compared, or the samples of the map
-  std::vector<double> forward;     ///< n [m], of each of them to the reference
-  std::vector<double> backward;    ///< [m], of each point of the reference, in its order, to the subject
+  std::vector<Vector<3>> subject;  ///< n points [m]: the compared cloud, or the samples of the compared map
+  std::vector<double> forward;     ///< n [m], from each point of the subject to the reference
+  std::vector<double> backward;    ///< [m], from each point of the reference, in its order, to the subject
 };
 
-/// Hausdorff distance of two sets of points [m], one frame. `threads` = 0: all; never shows in the result.
-/// The single distances on request. Throws std::invalid_argument if a set is empty or a point is not finite (naming
-/// its index).
+/// Computes the distances between two sets of points [m] in the same frame.
+///
+/// If `distances` is given, it receives the single distances. `threads`: 0 = all cores. Throws std::invalid_argument if
+/// a set is empty or a point is not finite; the message gives the index of the point.
 GAUSSMAP_API HausdorffResult hausdorff(const std::vector<Vector<3>>& a, const std::vector<Vector<3>>& b,
                                        int threads = 0, PointDistances* distances = nullptr);
 
-/// The maxima of hausdorff() alone, the same to the last bit. Most points are never searched for: they, or whole boxes
-/// of them, are seen to have a neighbour nearer than the largest distance known already. Nearly all the time goes
-/// into sorting.
+/// The two maxima of hausdorff().
 struct HausdorffMaxima {
-  double forward = 0.0;   ///< [m]
-  double backward = 0.0;  ///< [m]
+  double forward = 0.0;   ///< largest distance from a point of a to the nearest point of b [m]
+  double backward = 0.0;  ///< largest distance from a point of b to the nearest point of a [m]
+  /// Returns the Hausdorff distance [m]: the larger of the two.
   double hausdorff() const { return forward > backward ? forward : backward; }
 };
-/// Throws as hausdorff().
+/// Computes only the maxima of hausdorff(), with bit-identical results in less time.
+///
+/// Most points need no search: they, or whole boxes of them, are known to have a neighbour nearer than the largest
+/// distance so far. Nearly all the time is spent on sorting. `threads`: 0 = all cores. Throws like hausdorff().
 GAUSSMAP_API HausdorffMaxima hausdorffMaxima(const std::vector<Vector<3>>& a, const std::vector<Vector<3>>& b,
                                              int threads = 0);
 
-/// How far one scale of a map is from a reference; forward = from the map's samples to the reference (what the map
-/// invents), backward = from the reference to the samples (what the map misses).
+/// The distances between a map and a reference. Forward is from the map's samples to the reference (surfaces that only
+/// the map has); backward is from the reference to the samples (surfaces that the map misses).
 struct MapHausdorff {
-  HausdorffResult all;               ///< all samples inside their bounds (SampleBounds)
-  HausdorffResult within_two_sigma;  ///< only the samples at most 2 sigma from their means; count 0 if none is
-  std::size_t gaussians = 0;         ///< of the scale, or leaves()
-  std::size_t samples = 0;           ///< placed; `within_two_sigma.forward.count` of them are near their means
-  std::size_t unplaced = 0;          ///< samples that found no place in their bounds, see sampleMap()
+  HausdorffResult all;               ///< all samples inside their bounds (see SampleBounds)
+  HausdorffResult within_two_sigma;  ///< only samples within 2 sigma of their means; count = 0 if there are none
+  std::size_t gaussians = 0;         ///< number of Gaussians of the scale, or of the leaves
+  std::size_t samples = 0;           ///< number of samples; within_two_sigma.forward.count of them are within 2 sigma
+  std::size_t unplaced = 0;          ///< number of samples missing, see sampleMap()
 };
 
-/// What maps and clouds are compared with, sorted once for any number of comparisons. A value; copies are cheap.
+/// A reference for comparisons with maps and clouds. It is sorted once and serves any number of comparisons. It is a
+/// plain value, and copies are cheap.
 class GAUSSMAP_API Reference {
  public:
-  /// Points [m]. Throws std::invalid_argument if there are none or one is not finite (naming its index).
+  /// Makes a reference of points [m]. Throws std::invalid_argument if there are none or one is not finite; the message
+  /// gives its index.
   explicit Reference(std::vector<Vector<3>> points);
-  /// The surface of a mesh: forward are the exact distances to it, backward those of `samples` points spread over its
-  /// area (sampleSurface()). Throws std::invalid_argument if the mesh has a fault or no area, or samples is 0.
+  /// Makes a reference of the surface of a mesh.
+  ///
+  /// Forward distances are exact distances from the surface. Backward distances start from `samples` points on the
+  /// surface (see sampleSurface()). Throws std::invalid_argument if the mesh has a fault or no area, or `samples` is 0.
   Reference(const TriangleMesh& mesh, std::size_t samples, std::uint64_t seed = 1);
-  /// Another map: its samples. `within_two_sigma` then looks at those near their means only, on both sides.
-  /// Throws std::invalid_argument if there are none.
+  /// Makes a reference of the samples of another map. MapHausdorff::within_two_sigma then uses only samples within 2
+  /// sigma on both sides. Throws std::invalid_argument if there are no samples.
   explicit Reference(const MapSamples<3>& samples);
 
-  /// What the backward distances start from [m].
+  /// Returns the points from which the backward distances start [m].
   const std::vector<Vector<3>>& points() const;
 
-  /// Compares a cloud. Throws as hausdorff().
+  /// Compares a cloud with the reference. If `distances` is given, it receives the single distances. Throws like
+  /// hausdorff().
   HausdorffResult compare(const std::vector<Vector<3>>& subject, int threads = 0,
                           PointDistances* distances = nullptr) const;
 
-  /// Samples a scale of a map and compares the samples, Yguel 2009 sec. 6. Note what the maximum of `all.forward` is:
-  /// a Gaussian has no end but its bounds', so it grows with the number of samples (the paper's Hausdorff distance does
-  /// too). Compare maps at equal options, or by q99, or by `within_two_sigma`, whose samples fill an ellipsoid.
-  /// Throws std::invalid_argument if the scale is empty, std::out_of_range for a scale that the map does not have.
+  /// Compares samples of one scale of a map with the reference, Yguel 2009 sec. 6.
+  ///
+  /// The maximum of `all.forward` grows with the number of samples, as in the paper, because a Gaussian ends only at
+  /// its bounds. Compare maps with equal options, or by q99, or by `within_two_sigma`, whose samples fill an ellipsoid.
+  /// If `distances` is given, it receives the single distances. Throws std::invalid_argument if the scale is empty, and
+  /// std::out_of_range if the map does not have the scale.
   MapHausdorff compare(const GaussianMap<3>& map, int scale, const SampleOptions& options = {},
                        PointDistances* distances = nullptr) const;
-  /// The same for the map at its finest, leaves(): a compressed map as a whole.
+  /// Compares samples of the leaves of a map with the reference: a compressed map as a whole. It works like compare()
+  /// for one scale.
   MapHausdorff compareLeaves(const GaussianMap<3>& map, const SampleOptions& options = {},
                              PointDistances* distances = nullptr) const;
 
@@ -107,7 +118,7 @@ class GAUSSMAP_API Reference {
   std::shared_ptr<const Parts> parts_;
 };
 
-/// The same for one scale and reference points [m, map frame]. Throws as Reference and its compare().
+/// Compares one scale of a map with reference points [m, map frame]. Throws like Reference and Reference::compare().
 GAUSSMAP_API MapHausdorff evaluateMap(const GaussianMap<3>& map, int scale, const std::vector<Vector<3>>& reference,
                                       const SampleOptions& options = {});
 

@@ -9,47 +9,56 @@
 
 namespace gaussmap {
 
-/// logLikelihood() of many points [1/m^D], n values in their order: every Gaussian is factorised once, and the cells
-/// around are looked up once for all points of a cell. Minus infinity where a point's cell and all cells next to it
-/// are empty. `threads` = 0: all; the result is the same to the last bit for any number.
-/// Throws std::out_of_range for a scale that the map does not have, or a point that has no cell (also if it is not
-/// finite); std::domain_error if a covariance is not positive definite.
+/// Returns logLikelihood() of many points, n values in their order [ln(1/m^D)].
+///
+/// Every Gaussian is factorised once, and the adjacent cells are looked up once for all points of a cell. The value is
+/// minus infinity if a point's cell and all adjacent cells are empty. `threads`: 0 = all cores.
+/// Throws std::out_of_range if the map does not have the scale, or if a point is not finite or out of the grid's range.
+/// Throws std::domain_error if a covariance is not positive definite.
 template <int D>
 GAUSSMAP_API std::vector<double> logLikelihoods(const GaussianMap<D>& map, int scale,
                                                 const std::vector<Vector<D>>& points, int threads = 0);
-/// The same with the map at its finest, leaves(): of every scale the coarse cells without detail under them among the
-/// point's cell and those next to it; weights divided by that of the whole map.
+/// Returns logLikelihood() of many points from the leaves of the map, n values in their order [ln(1/m^D)].
+///
+/// At every scale, the leaf cells among a point's cell and the adjacent cells contribute. The weights are divided by
+/// the weight of the whole map. `threads`: 0 = all cores. Throws like logLikelihoods() of one scale.
 template <int D>
 GAUSSMAP_API std::vector<double> logLikelihoods(const GaussianMap<D>& map, const std::vector<Vector<D>>& points,
                                                 int threads = 0);
 
+/// Options of heldOutLogLikelihood().
 struct HeldOutOptions {
-  double background = 0.01;  ///< epsilon, share of the points that may come from anywhere, in (0, 1)
-  double volume = 0.0;       ///< V, where 'anywhere' is [m^D]; 0: the box around the points, each side at least 1 m
-  int threads = 0;           ///< 0 = all; never shows in the result
+  double background = 0.01;  ///< epsilon, share of the points that can be anywhere, in (0, 1)
+  double volume = 0.0;       ///< V, volume for these points [m^D]; 0: box around all points, each side at least 1 m
+  int threads = 0;           ///< 0 = all cores
 };
 
-/// How well a map foretells points. The map's density p is mixed with a uniform one, so that a point where the map
-/// has nothing costs much but not everything: each point counts ln((1 - epsilon) p(x) + epsilon / V) [nat, p in 1/m^D].
-/// Larger is better. Compare maps by the same points and options only: V is the same for all of them then.
+/// How well a map predicts points.
+///
+/// The map's density p is mixed with a uniform density. A point outside the map is then expensive, but not infinitely.
+/// Each point scores ln((1 - epsilon) p(x) + epsilon / V) [nat, p in 1/m^D]. A larger score is better. Compare maps
+/// only with the same points and options, so that V is the same.
 struct HeldOutResult {
-  double mean = 0.0;           ///< over all points [nat]
-  double median = 0.0;         ///< by nearest rank [nat]
-  double mean_inside = 0.0;    ///< over the points where p > 0, of ln p alone [nat]; NaN if there are none
-  double floor = 0.0;          ///< ln(epsilon / V), what a point counts where p is 0 [nat]
+  double mean = 0.0;           ///< mean score of all points [nat]
+  double median = 0.0;         ///< median score, by nearest rank [nat]
+  double mean_inside = 0.0;    ///< mean of ln p over the points where p > 0 [nat]; NaN if there are none
+  double floor = 0.0;          ///< ln(epsilon / V), the score of a point where p = 0 [nat]
   double volume = 0.0;         ///< V that was used [m^D]
-  std::size_t count = 0;       ///< points
-  std::size_t in_no_cell = 0;  ///< of them, whose own cell is empty
-  std::size_t nowhere = 0;     ///< of these, with the cells next to it empty too: p = 0
+  std::size_t count = 0;       ///< number of points
+  std::size_t in_no_cell = 0;  ///< number of points whose own cell is empty
+  std::size_t nowhere = 0;     ///< number of points whose own and adjacent cells are all empty: p = 0
 };
 
-/// Scores points of which none was used to build the map. Throws as logLikelihoods(), and std::invalid_argument if
-/// there are no points or an option makes no sense (naming it).
+/// Scores one scale of a map with points that were not used to build it.
+///
+/// Throws like logLikelihoods(), and std::invalid_argument if there are no points or an option is out of range (the
+/// message names it).
 template <int D>
 GAUSSMAP_API HeldOutResult heldOutLogLikelihood(const GaussianMap<D>& map, int scale,
                                                 const std::vector<Vector<D>>& points,
                                                 const HeldOutOptions& options = {});
-/// The same with the map at its finest. A point lies in no cell if none that it lies in is a leaf.
+/// Scores the leaves of a map with points that were not used to build it. HeldOutResult::in_no_cell counts the points
+/// that lie in no leaf cell. Throws like heldOutLogLikelihood() of one scale.
 template <int D>
 GAUSSMAP_API HeldOutResult heldOutLogLikelihood(const GaussianMap<D>& map, const std::vector<Vector<D>>& points,
                                                 const HeldOutOptions& options = {});

@@ -13,105 +13,130 @@
 
 namespace gaussmap {
 
-/// Highest log-odds of occupancy, the paper's o_max. A map built in one go has seen no miss: all its clusters have it.
+/// Maximum log-odds of occupancy, the paper's o_max. All clusters have this value in a map without occupancy, because
+/// no beam was observed to pass through them.
 inline constexpr float kMaxOccupancy = 10.0f;
 
-/// Indices first, first + 1, ..., last - 1.
+/// A range of indices: first, first + 1, ..., last - 1.
 struct IndexRange {
-  std::size_t first = 0;
-  std::size_t last = 0;
-  std::size_t size() const { return last - first; }
-  bool empty() const { return first == last; }
+  std::size_t first = 0;                             ///< first index
+  std::size_t last = 0;                              ///< one past the last index
+  std::size_t size() const { return last - first; }  ///< number of indices
+  bool empty() const { return first == last; }       ///< true if the range holds no index
 };
 
-/// One scale as plain arrays. Cells stand in key order: sorted by their ancestor at the coarsest scale, then by
-/// the next finer one, and so on, each as x, then y, then z. The children of a cell are therefore neighbours.
+/// One scale of a map as plain arrays.
+///
+/// Cells are in key order: sorted by their ancestor at the coarsest scale, then by the ancestor at the next finer
+/// scale, and so on, each by x, then y, then z. The children of a cell are therefore consecutive.
 template <int D>
 struct MapScale {
   std::vector<CellKey<D>> keys;               ///< n cells
-  std::vector<std::uint32_t> first_child;     ///< n + 1 indices of cells of the finer scale; empty at the finest
-  std::vector<CellMoments<D>> moments;        ///< n, or empty: finest scale only, what its Gaussians are made from
-  std::vector<std::uint32_t> first_gaussian;  ///< n + 1, or empty: cell i holds Gaussian i
-  std::vector<Gaussian<D>> gaussians;         ///< mean about the centre of the cell; empty where there are moments
-  std::vector<std::uint32_t> parent;          ///< per Gaussian, its cluster at the coarser scale; empty at the coarsest
-  std::vector<float> log_odds;                ///< per Gaussian, of being occupied; or empty: no scan was asked
+  std::vector<std::uint32_t> first_child;     ///< n + 1 indices of cells of the finer scale; empty at scale 0
+  std::vector<CellMoments<D>> moments;        ///< n, or empty; only at scale 0, where the Gaussians follow from them
+  std::vector<std::uint32_t> first_gaussian;  ///< n + 1, or empty: cell i holds only Gaussian i
+  std::vector<Gaussian<D>> gaussians;         ///< means relative to the cell's centre; empty if there are moments
+  std::vector<std::uint32_t> parent;          ///< per Gaussian: its cluster of the coarser scale; empty at the coarsest
+  std::vector<float> log_odds;                ///< per Gaussian: occupancy; empty if the map has no occupancy
 
+  /// Returns the number of Gaussians.
   std::size_t gaussianCount() const { return gaussians.empty() ? moments.size() : gaussians.size(); }
 };
 
-/// A multi-scale map: at every scale a sparse grid of cells with Gaussians in them, one per cell at the finest
-/// scale, one or more at the coarser ones, linked to the finer Gaussians that they stand for (Yguel 2009, sec. 3, 5).
-/// A coarse cell may stand alone, without cells under it: compress() deletes detail where it is not needed.
-/// A value: made by build(), improved by refine(), kept by save(). Reading from several threads is safe.
+/// A multi-scale map of Gaussians, Yguel 2009 sec. 3 and 5.
+///
+/// Every scale is a sparse grid of cells that hold Gaussians. build() makes one Gaussian per cell at the finest scale.
+/// A coarser cell holds one or more Gaussians (clusters), which are linked to the finer Gaussians that they represent.
+/// A coarse cell can be a leaf, without cells below it: compress() deletes detail that is not needed.
+///
+/// A map is a plain value. build() makes it, refine() improves it, save() stores it. Several threads can read it at the
+/// same time.
 template <int D>
 class GAUSSMAP_API GaussianMap {
  public:
-  /// An empty map. Throws std::invalid_argument on unusable options.
+  /// Makes an empty map. Throws std::invalid_argument if the options are not usable (see Grid).
   explicit GaussianMap(const MapOptions& options = {})
       : grid_(options), scales_(std::size_t(grid_.scales())), weights_(scales_.size(), 0.0) {}
 
-  /// From finished scales, finest first. Throws std::invalid_argument, saying what, if they do not fit together.
+  /// Makes a map of finished scales, finest first. Throws std::invalid_argument if the scales are not consistent; the
+  /// message gives the reason.
   GaussianMap(const MapOptions& options, std::vector<MapScale<D>> scales);
 
-  /// Moves all scales out, finest first: std::move(map).takeScales(). The map is empty afterwards.
+  /// Moves all scales out, finest first: `std::move(map).takeScales()`. The map is empty afterwards.
   std::vector<MapScale<D>> takeScales() &&;
 
+  /// Returns the grid of cells.
   const Grid<D>& grid() const { return grid_; }
+  /// Returns the options, with the automatic noise filled in.
   const MapOptions& options() const { return grid_.options(); }
+  /// Returns the number of scales.
   int scales() const { return grid_.scales(); }
+  /// Returns the arrays of scale `s`.
   const MapScale<D>& scale(int s) const { return scales_[static_cast<std::size_t>(s)]; }
+  /// Returns true if the map has no cell.
   bool empty() const { return scales_.back().keys.empty(); }
-  /// True when some coarse cell has no cells under it: the finer scales do not cover the whole map.
+  /// Returns true if a coarse cell has no cells below it. The finer scales then do not cover the whole map.
   bool isCompressed() const { return compressed_; }
-  /// True when the finest scale holds the exact moments of all points: such a map can take more of them and merges
-  /// exactly.
-  bool canGrow() const { return empty() || (!isCompressed() && !scales_.front().moments.empty()); }
+  /// Returns true if the map can take more points: it is empty, or its finest scale holds the exact moments of all
+  /// points. Such maps also merge exactly.
+  bool acceptsScans() const { return empty() || (!isCompressed() && !scales_.front().moments.empty()); }
 
+  /// Returns the number of cells of scale `s`.
   std::size_t cellCount(int s) const { return scale(s).keys.size(); }
+  /// Returns the number of Gaussians of scale `s`.
   std::size_t gaussianCount(int s) const { return scale(s).gaussianCount(); }
-  /// Sum of the weights of a scale: the number of points under its cells. The same at every scale, unless the map is
-  /// compressed: then it is less where cells are missing, and that of all points at the coarsest scale only.
+  /// Returns the sum of the weights of scale `s`: the number of points that its Gaussians represent. In a compressed
+  /// map only the coarsest scale represents all points. In any other map all scales have the same sum.
   double weight(int s) const { return weights_[static_cast<std::size_t>(s)]; }
 
-  /// Index of a cell, or nothing if it is not occupied. Logarithmic in the children of a cell.
+  /// Returns the index of a cell of scale `s`, or std::nullopt if the cell is not occupied. The cost is logarithmic in
+  /// the number of children per cell.
   std::optional<std::size_t> find(const CellKey<D>& key, int s) const;
-  /// The Gaussians of cell `cell` of scale s.
+  /// Returns the Gaussians of cell `cell` of scale `s`.
   IndexRange gaussiansOf(std::size_t cell, int s) const;
-  /// The cell that Gaussian `index` of scale s lies in.
+  /// Returns the cell that holds Gaussian `index` of scale `s`.
   std::size_t cellOf(std::size_t index, int s) const;
-  /// The cells of scale s - 1 under a cell of scale s >= 1; an empty range if there are none.
+  /// Returns the cells of scale `s` - 1 below a cell of scale `s` >= 1. The range is empty if there are none.
   IndexRange childCells(std::size_t cell, int s) const;
-  /// True if the map has nothing finer than this cell: at the finest scale, and where a compressed map ends above it.
+  /// Returns true if the map has no cells below this cell. This holds for all cells of scale 0 and for some coarse
+  /// cells of a compressed map.
   bool isLeaf(std::size_t cell, int s) const { return s == 0 || childCells(cell, s).empty(); }
-  /// All Gaussians of scale s - 1 in the cells under a cell of scale s >= 1: G(phi(c)) of the paper.
+  /// Returns all Gaussians of scale `s` - 1 in the cells below a cell of scale `s` >= 1: G(phi(c)) of the paper.
   IndexRange gaussiansUnder(std::size_t cell, int s) const;
 
-  /// Gaussian `index` of scale s, map frame.
+  /// Returns Gaussian `index` of scale `s`, map frame.
   Gaussian<D> gaussian(std::size_t index, int s) const;
-  /// The same with its mean about the centre of its cell: nothing lost far from the origin.
+  /// Returns Gaussian `index` of scale `s` with its mean relative to the centre of its cell [m]. This mean is exact
+  /// also far from the origin.
   Gaussian<D> localGaussian(std::size_t index, int s) const;
 
-  /// True when range images have been asked about the Gaussians: a map made on line. All scales know it, or none.
+  /// Returns true if the Gaussians have occupancy values from range images, as in a map of OnlineMapper. Either all
+  /// scales have them or none.
   bool hasOccupancy() const { return !scale(scales() - 1).log_odds.empty(); }
-  /// Log-odds that something is there; kMaxOccupancy in a map that has seen no miss since no scan was asked.
+  /// Returns the log-odds that something is still at Gaussian `index` of scale `s`, or kMaxOccupancy if the map has no
+  /// occupancy.
   float logOdds(std::size_t index, int s) const { return hasOccupancy() ? scale(s).log_odds[index] : kMaxOccupancy; }
 
-  /// The cluster of scale s + 1 that a Gaussian of scale s belongs to (paper Fig. 6); s below the coarsest.
+  /// Returns the parent of Gaussian `index` of scale `s`: a cluster of scale `s` + 1 (paper, Fig. 6). `s` must be below
+  /// the coarsest scale.
   std::size_t parentOf(std::size_t index, int s) const { return scale(s).parent[index]; }
-  /// The Gaussians of scale s - 1 that a cluster of scale s >= 1 stands for.
+  /// Returns the children of Gaussian `index` of scale `s` >= 1: the Gaussians of scale `s` - 1 that it represents.
   std::vector<std::size_t> childrenOf(std::size_t index, int s) const;
 
  private:
   Grid<D> grid_;
   std::vector<MapScale<D>> scales_;  // finest first
-  std::vector<double> weights_;      // of each scale
+  std::vector<double> weights_;      // per scale
   bool compressed_ = false;
 };
 
+/// A map in space.
 using GaussianMapOctree = GaussianMap<3>;
+/// A map in the plane.
 using GaussianMapQuadtree = GaussianMap<2>;
 
-/// The permutation that puts cells of one scale into key order; `levels` = how many coarser scales there are.
+/// Returns the permutation that puts the cells of one scale into key order (see MapScale). `levels` is the number of
+/// coarser scales.
 template <int D>
 GAUSSMAP_API std::vector<std::uint32_t> keyOrder(const std::vector<CellKey<D>>& keys, int ratio, int levels);
 

@@ -13,22 +13,23 @@
 
 namespace gaussmap {
 
-/// Integer coordinates of a cell at its scale; cell k covers [k, k + 1) * side on each axis.
-/// There is no origin to agree on: maps of one resolution always share their cells.
+/// Integer coordinates of a cell at its scale. Cell k covers [k, k + 1) * side along each axis.
+/// All grids have their origin at 0, so maps of equal resolution and ratio share their cells.
 template <int D>
 using CellKey = std::array<std::int32_t, D>;
 
-/// "(1, -2, 0)", for messages.
+/// Returns a key as text for messages, for example "(1, -2, 0)".
 template <int D>
 GAUSSMAP_API std::string toString(const CellKey<D>& key);
 
-/// What a map is made of; two maps with equal options share their cells at every scale.
+/// Options of the cells of a map. Two maps with equal options share their cells at every scale.
 struct MapOptions {
   double resolution = 0.1;  ///< a_0, side of the cells of the finest scale (scale 0) [m], > 0
   int ratio = 10;           ///< a cell of scale s + 1 is `ratio` times as wide, >= 2 (2 = a classical octree)
-  int scales = 3;           ///< how many scales, >= 1
+  int scales = 3;           ///< number of scales, >= 1
   double noise = 0.0;       ///< standard deviation added to every covariance [m]; 0: resolution / 20
 
+  /// Returns true if all options are equal.
   friend bool operator==(const MapOptions& a, const MapOptions& b) {
     return a.resolution == b.resolution && a.ratio == b.ratio && a.scales == b.scales && a.noise == b.noise;
   }
@@ -37,38 +38,43 @@ struct MapOptions {
 /// An axis-aligned box [m, map frame].
 template <int D>
 struct Box {
-  Vector<D> low;
-  Vector<D> high;
+  Vector<D> low;   ///< smallest coordinates
+  Vector<D> high;  ///< largest coordinates
 };
 
-/// low <= point < high along every axis.
+/// Returns true if low <= point < high along every axis.
 template <int D>
 GAUSSMAP_API bool isInBox(const Box<D>& box, const Vector<D>& point);
 
-/// Where cells are: sides, keys, centres, parents. Scale s has cells of side resolution * ratio^s.
+/// Computes sides, keys, centres and parents of cells. Scale s has cells of side resolution * ratio^s.
 template <int D>
 class GAUSSMAP_API Grid {
  public:
-  /// Throws std::invalid_argument, naming the option, if the options describe no usable grid.
+  /// Makes the grid of a map. Throws std::invalid_argument if an option is not usable; the message names the option.
   explicit Grid(const MapOptions& options = {});
 
-  /// The options, with the automatic noise filled in.
+  /// Returns the options, with the automatic noise filled in.
   const MapOptions& options() const { return options_; }
+  /// Returns the number of scales.
   int scales() const { return options_.scales; }
-  /// Side of the cells of a scale [m].
+  /// Returns the side of the cells of a scale [m].
   double side(int scale) const { return sides_[static_cast<std::size_t>(scale)]; }
-  /// How many finest cells fit along a side of a cell of this scale: ratio^scale.
+  /// Returns the number of finest cells along the side of a cell of this scale: ratio^scale.
   std::int64_t cellsAlongSide(int scale) const { return spans_[static_cast<std::size_t>(scale)]; }
 
-  /// The cell that holds a point [m, map frame]. The point is first snapped to the lattice of
-  /// side_0 / 65536, as in CellMoments, so that a lookup finds the cell its point was counted in.
-  /// Throws std::out_of_range, naming the point, if it is not finite or the index does not fit 32 bits.
+  /// Returns the cell that holds a point [m, map frame].
+  ///
+  /// The point is first rounded to the lattice of side_0 / 65536, as in CellMoments. A lookup therefore finds the cell
+  /// in which the point was counted. Throws std::out_of_range if the point is not finite or an index of its finest cell
+  /// does not fit 32 bits; the message gives the point.
   CellKey<D> keyOf(const Vector<D>& point, int scale = 0) const;
 
-  /// The cell of the coarser scale `to` that holds a cell of scale `from`; floor, also for negative coordinates.
+  /// Returns the cell of the coarser scale `to` that contains cell `key` of scale `from`. The division rounds down,
+  /// also for negative coordinates.
   CellKey<D> ancestor(const CellKey<D>& key, int from, int to) const;
 
-  /// Is a cell the parent, at the next coarser scale, of another? No division: what is asked of every cell of a map.
+  /// Returns true if cell `parent` of the next coarser scale contains cell `key`. The test uses no division, because it
+  /// runs for every cell of a map.
   bool isParent(const CellKey<D>& parent, const CellKey<D>& key) const {
     bool is_parent = true;
     for (std::size_t axis = 0; axis < D; ++axis)
@@ -77,14 +83,14 @@ class GAUSSMAP_API Grid {
     return is_parent;
   }
 
-  /// Centre of a cell [m, map frame].
+  /// Returns the centre of a cell [m, map frame].
   Vector<D> centre(const CellKey<D>& key, int scale) const;
-  /// The box of a cell [m, map frame].
+  /// Returns the box of a cell [m, map frame].
   Box<D> boxOf(const CellKey<D>& key, int scale) const;
 
-  /// Centre of a cell minus the centre of its parent [m]: exact wherever the cell is.
+  /// Returns the centre of a cell minus the centre of its parent [m]. The result is exact, also far from the origin.
   Vector<D> centreInParent(const CellKey<D>& key, int scale) const;
-  /// The same where the parent is known.
+  /// Returns the same for a known parent, without computing its key.
   Vector<D> centreInParent(const CellKey<D>& key, const CellKey<D>& parent, int scale) const;
 
  private:

@@ -14,37 +14,46 @@
 
 namespace gaussmap {
 
-/// The finest scale while it grows: points in, exact moments per cell out.
-/// Open addressing over 8-byte slots, cells in fixed chunks: nothing is allocated per cell and a cell never moves. A
-/// moved-from grid can only be destroyed or assigned to.
+/// Sorts points into the cells of the finest scale and holds the exact moments of every cell.
+///
+/// The hash table uses open addressing with 8-byte slots. The cells lie in fixed chunks, so a cell never moves and no
+/// memory is allocated per cell. A moved-from grid can only be destroyed or assigned to.
 template <int D>
 class GAUSSMAP_API MomentGrid {
  public:
-  struct alignas(32) Cell {  // two cache lines, never three
-    CellKey<D> key;
-    CellMoments<D> moments;
+  /// A cell with its moments. The alignment keeps a cell within two cache lines.
+  struct alignas(32) Cell {
+    CellKey<D> key;          ///< integer coordinates
+    CellMoments<D> moments;  ///< exact sums over the points of the cell
   };
   static_assert(sizeof(Cell) <= 96, "a finest cell must fit into one and a half cache lines");
 
-  /// Cells of side `resolution` [m]. Throws std::invalid_argument unless it is positive and finite.
+  /// Makes an empty grid with cells of side `resolution` [m]. Throws std::invalid_argument unless the resolution is
+  /// positive and finite.
   explicit MomentGrid(double resolution);
 
+  /// Returns the side of the cells [m].
   double resolution() const { return resolution_; }
+  /// Returns the number of occupied cells.
   std::size_t size() const { return size_; }
+  /// Returns true if no cell is occupied.
   bool empty() const { return size_ == 0; }
-  /// In order of first touch.
+  /// Returns occupied cell `index`. Cells are in the order in which they received their first point.
   const Cell& operator[](std::size_t index) const { return chunks_[index / kChunk][index % kChunk]; }
-  /// The sums of a cell, nothing if it has no point.
+  /// Returns the moments of a cell, or nullptr if the cell has no point.
   const CellMoments<D>* find(const CellKey<D>& key) const;
-  /// Points counted so far.
+  /// Returns the number of points counted so far.
   std::int64_t pointCount() const { return point_count_; }
 
-  /// Counts the finite points of a block [m, map frame] and returns how many they were.
-  /// Throws std::out_of_range, naming the point, if one is too far for 32-bit cells, and std::length_error if a cell
-  /// would hold more points than CellMoments can; the block is then not counted.
+  /// Counts the finite points of a block [m, map frame] and returns their number.
+  ///
+  /// Throws std::out_of_range if a point lies beyond the range of 32-bit cell indices; the message gives the point.
+  /// Throws std::length_error if a cell would hold more points than CellMoments::kMaxPoints. In both cases the block is
+  /// not counted.
   std::size_t add(const PointBlock<D>& block);
 
-  /// Counts `count` points, `point(i)` giving anything indexable by axis ([0], [1], ...). Returns how many were finite.
+  /// Counts `count` points [m, map frame] and returns the number of finite points. `point(i)` returns point i as
+  /// anything that can be indexed by axis ([0], [1], ...). Throws like add() for a block.
   template <typename PointAt>
   std::size_t addPoints(std::size_t count, PointAt&& point) {
     PointBlock<D> block;
@@ -59,41 +68,45 @@ class GAUSSMAP_API MomentGrid {
     }
     return added;
   }
+  /// Counts the finite points of a list [m, map frame] and returns their number. Throws like add() for a block.
   std::size_t addPoints(const std::vector<Vector<D>>& points) {
     return addPoints(points.size(), [&](std::size_t i) -> const Vector<D>& { return points[i]; });
   }
 
-  /// Adds moments to one cell.
+  /// Adds moments to one cell. Throws std::length_error if the cell would hold too many points.
   void add(const CellKey<D>& key, const CellMoments<D>& moments);
 
-  /// Adds all cells of another grid of the same resolution, on `threads` threads (0 = all): exact, so any order of
-  /// merging gives the same sums. Throws std::invalid_argument if the resolutions differ.
+  /// Adds all cells of another grid of the same resolution. `threads`: 0 = all cores.
+  ///
+  /// The sums are exact, so any order of merging gives the same sums. Throws std::invalid_argument if the resolutions
+  /// differ, and std::length_error if a cell would hold too many points.
   void merge(const MomentGrid& other, int threads = 0);
 
-  /// Bytes held: of chunks, what cells have taken so far.
+  /// Returns the bytes in use: the hash table and the occupied part of the chunks.
   std::size_t memoryBytes() const;
 
  private:
   struct Slot {
-    std::uint32_t hash;   // of the key: most slots are told apart without a look at their cell
-    std::uint32_t index;  // kEmpty or the cell's
+    std::uint32_t hash;   // of the key; most comparisons need only the hash and do not read the cell
+    std::uint32_t index;  // of the cell, or kEmpty
   };
   struct Free {
     void operator()(void* memory) const { std::free(memory); }
   };
-  static constexpr std::size_t kChunk = 65536;  // whole huge pages; what is not touched takes no memory
+  static constexpr std::size_t kChunk = 65536;  // cells; a chunk is whole huge pages, untouched pages take no memory
   static constexpr std::uint32_t kEmpty = 0xFFFFFFFFu;
 
   Cell& cell(std::uint32_t index) { return chunks_[index / kChunk][index % kChunk]; }
-  /// The first cell with that hash, most likely the one looked for; kEmpty if there is none.
+  /// Returns the first cell with this hash, most likely the cell that the caller looks for, or kEmpty.
   std::uint32_t candidate(std::uint32_t hash) const;
   static void prefetch(const Cell& cell);
-  std::uint32_t indexOf(const CellKey<D>& key, std::uint32_t hash) const;  // kEmpty if it is not there
+  std::uint32_t indexOf(const CellKey<D>& key, std::uint32_t hash) const;  // kEmpty if the grid has no such cell
   Cell& findOrInsert(const CellKey<D>& key, std::uint32_t hash);
-  /// Room for so many cells in chunks and slots.
+  /// Allocates chunks and slots for `cells` cells in total.
   void reserve(std::size_t cells);
-  /// Makes a cell that is behind the last one the last one.
+  /// Appends the cell that the caller has constructed behind the last cell, and enters it into the hash table.
   void enter(std::uint32_t hash);
+  /// Enlarges the hash table to `slot_count` slots.
   void widen(std::size_t slot_count);
 
   double resolution_;
@@ -104,9 +117,10 @@ class GAUSSMAP_API MomentGrid {
   std::unique_ptr<Slot[], Free> slots_;
 };
 
-/// Counts points [map frame] on `threads` threads (0 = all), which never show in the sums: they are exact. Non-finite
-/// points are left out. Throws std::invalid_argument unless the resolution [m] is positive and finite,
-/// std::out_of_range, naming the point, if one is too far for 32-bit cells.
+/// Sorts points [m, map frame] into the cells of a new grid. `threads`: 0 = all cores.
+///
+/// Non-finite points are ignored. Throws std::invalid_argument unless the resolution [m] is positive and finite, and
+/// std::out_of_range if a point lies beyond the range of 32-bit cell indices; the message gives the point.
 GAUSSMAP_API MomentGrid<3> countPoints(double resolution, const PointsView& points, int threads = 0);
 
 }  // namespace gaussmap

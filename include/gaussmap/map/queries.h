@@ -10,65 +10,86 @@
 
 namespace gaussmap {
 
-/// One Gaussian of a map.
+/// Identifies one Gaussian of a map.
 struct GaussianId {
-  int scale = 0;
-  std::size_t index = 0;  ///< in its scale
+  int scale = 0;          ///< scale of the Gaussian
+  std::size_t index = 0;  ///< index in this scale
+  /// Returns true if both identify the same Gaussian.
   friend bool operator==(const GaussianId& a, const GaussianId& b) { return a.scale == b.scale && a.index == b.index; }
 };
 
-/// All Gaussians of one scale, in its order. Throws std::out_of_range for a scale that the map does not have.
+/// Returns all Gaussians of one scale, in the order of the scale. Throws std::out_of_range if the map does not have the
+/// scale.
 template <int D>
 GAUSSMAP_API std::vector<GaussianId> gaussiansOfScale(const GaussianMap<D>& map, int scale);
 
-/// The Gaussians of the leaves: the finest scale, and where compress() deleted it, the coarse cells that are left.
-/// Together they represent every point once. Finest first, each scale in its order. For a map that is not compressed:
-/// its finest scale.
+/// Returns the Gaussians of all leaf cells: the finest scale, and the coarse cells below which compress() deleted the
+/// detail.
+///
+/// Together they represent every point once. The finest scale is first, and each scale keeps its order. In a map that
+/// is not compressed, the leaves are the finest scale.
 template <int D>
 GAUSSMAP_API std::vector<GaussianId> leaves(const GaussianMap<D>& map);
 
-/// How much of a scale lies in leaves (GaussianMap::isLeaf()).
+/// Counts the leaf cells of one scale and their contents (see GaussianMap::isLeaf()).
 struct LeafCounts {
-  std::size_t cells = 0;
-  std::size_t gaussians = 0;
-  double weight = 0.0;  ///< points
+  std::size_t cells = 0;      ///< number of leaf cells
+  std::size_t gaussians = 0;  ///< number of Gaussians in leaf cells
+  double weight = 0.0;        ///< number of points that these Gaussians represent
 };
+
+/// Returns the counts of the leaf cells of one scale.
 template <int D>
 GAUSSMAP_API LeafCounts leafCounts(const GaussianMap<D>& map, int scale);
 
-/// The box of the occupied cells, each at the finest scale that the map has there; nullopt for an empty map.
+/// Returns the smallest box around all leaf cells [m, map frame], or std::nullopt if the map is empty.
 template <int D>
 GAUSSMAP_API std::optional<Box<D>> extentOf(const GaussianMap<D>& map);
 
-/// ln of the map's density at a point [1/m^D]: the mixture of the Gaussians in the point's cell and the cells
-/// next to it, weights divided by the weight of the whole scale. Minus infinity where all these cells are empty.
-/// Throws std::out_of_range for a point that has no cell.
+/// Returns the logarithm of the map's density at a point, with the density in 1/m^D.
+///
+/// The density is the mixture of the Gaussians of scale `scale` in the point's cell and the adjacent cells. Their
+/// weights are divided by the weight of the whole scale. The result is minus infinity if all these cells are empty.
+/// Throws std::out_of_range if the point is not finite or out of the grid's range.
 template <int D>
 GAUSSMAP_API double logLikelihood(const GaussianMap<D>& map, const Vector<D>& point, int scale);
-/// The same for the leaves of the map: at every scale, the leaves among the point's cell and those next to it. The
-/// weights are divided by the weight of the whole map.
+/// Returns the logarithm of the density of the map's leaves at a point, with the density in 1/m^D.
+///
+/// The mixture uses, at every scale, the leaf cells among the point's cell and the adjacent cells. The weights are
+/// divided by the weight of the whole map. Throws std::out_of_range if the point is not finite or out of the grid's
+/// range.
 template <int D>
 GAUSSMAP_API double logLikelihood(const GaussianMap<D>& map, const Vector<D>& point);
 
-/// The Gaussian of a scale whose mean is nearest to a point (Euclidean, ties to the smaller index), however far;
-/// nullopt if the scale is empty. Throws std::out_of_range for a point that has no cell.
+/// The result of nearest(): a Gaussian and its distance.
 template <int D>
-struct Nearest {
-  std::size_t index;  ///< Gaussian of the scale asked for
-  double distance;    ///< of its mean to the point [m]
+struct NearestGaussian {
+  std::size_t index;  ///< Gaussian of the given scale
+  double distance;    ///< distance of the Gaussian's mean from the point [m]
 };
-template <int D>
-GAUSSMAP_API std::optional<Nearest<D>> nearest(const GaussianMap<D>& map, const Vector<D>& point, int scale);
 
-/// Unit normal of the surface at a point, from the finest cell around it whose points span a surface: at least
-/// D + 1 points, and spread of at least 4 noise floors along every axis but the normal. The sign is arbitrary.
-/// Returns nullopt if no scale has such a cell. Throws std::out_of_range for a point that has no cell.
+/// Returns the Gaussian of a scale whose mean is nearest to a point, at any distance, or std::nullopt if the scale is
+/// empty.
+///
+/// The distance is Euclidean; ties go to the smaller index. Throws std::out_of_range if the point is not finite or out
+/// of the grid's range.
+template <int D>
+GAUSSMAP_API std::optional<NearestGaussian<D>> nearest(const GaussianMap<D>& map, const Vector<D>& point, int scale);
+
+/// Returns the unit normal of the surface at a point, or std::nullopt if no scale has a suitable Gaussian there.
+///
+/// In the point's cell of each scale, finest first, the function takes the cluster nearest to the point under eq. (2)
+/// of Yguel 2009. The cluster must span a surface: it has at least D + 1 points, and its standard deviation is at least
+/// 4 noise floors along every axis except the normal. The sign of the normal is arbitrary. Throws std::out_of_range if
+/// the point is not finite or out of the grid's range.
 template <int D>
 GAUSSMAP_API std::optional<Vector<D>> normalAt(const GaussianMap<D>& map, const Vector<D>& point);
 
-/// Log-odds that something is at a point [m, map frame]: those of the Gaussian nearest to the point (Mahalanobis) in
-/// the finest cell that contains it. Returns nullopt if no cell contains the point, or if the point is not finite or
-/// out of range.
+/// Returns the log-odds that something is at a point [m, map frame].
+///
+/// The value is that of the Gaussian nearest to the point (Mahalanobis distance) in the leaf cell that contains the
+/// point. Returns std::nullopt if no leaf cell contains the point, or if the point is not finite or out of the grid's
+/// range.
 template <int D>
 GAUSSMAP_API std::optional<float> logOddsAt(const GaussianMap<D>& map, const Vector<D>& point);
 

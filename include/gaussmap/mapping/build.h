@@ -14,62 +14,77 @@
 
 namespace gaussmap {
 
+/// Options of accumulateScans(), accumulateScansInParts() and readPoints().
 struct GAUSSMAP_API AccumulateOptions {
   double resolution = 0.1;                                     ///< side of the cells [m]
-  double max_range = std::numeric_limits<double>::infinity();  ///< farther points are left out [m]
-  int threads = 0;                                             ///< 0 = all; does not change the result
+  double max_range = std::numeric_limits<double>::infinity();  ///< points farther from the sensor are ignored [m]
+  int threads = 0;                                             ///< 0 = all cores
 };
 
+/// The state of accumulateScans() after a scan.
 struct AccumulateProgress {
-  std::size_t scans_done = 0;
-  std::size_t scans = 0;
-  std::int64_t points = 0;
-  std::size_t cells = 0;  ///< of the thread that reports, so a lower bound
+  std::size_t scans_done = 0;  ///< scans read so far
+  std::size_t scans = 0;       ///< all scans
+  std::int64_t points = 0;     ///< points read so far
+  std::size_t cells = 0;       ///< occupied cells of the reporting thread: a lower bound of all occupied cells
 };
+/// A function that receives the progress.
 using ReportProgress = std::function<void(const AccumulateProgress&)>;
 
+/// The result of accumulateScans().
 struct AccumulatedScans {
-  MomentGrid<3> moments;
-  PointCounts counts;
+  MomentGrid<3> moments;  ///< exact moments per cell, map frame
+  PointCounts counts;     ///< accepted and dropped points
 };
 
-/// Reads scans one after the other and counts their points into cells: memory grows with the map, not with the scans.
-/// The sums are exact, so order and threads do not matter. `progress` is called after every scan, one call at a time.
-/// Throws FileError for a damaged file; std::out_of_range, naming scan and point, for a point too far for the cells;
-/// std::invalid_argument, naming the option.
+/// Reads scans and sorts their points into cells. The memory grows with the map, not with the number of scans.
+///
+/// `progress` is called after every scan, one call at a time. Throws:
+/// - FileError if a file is damaged
+/// - std::out_of_range if a point lies beyond the range of the cell indices; the message gives the scan and the point
+/// - std::invalid_argument if an option is out of range; the message names the option
 GAUSSMAP_API AccumulatedScans accumulateScans(const Scans& scans, const AccumulateOptions& options,
                                               const ReportProgress& progress = {});
 
-/// The same within limited memory: a thread hands its sums over whenever all threads together may hold more than
-/// `max_bytes` of them, and at the end. One call of `take` at a time, in no fixed order; each point is in exactly one
-/// of the grids.
+/// Reads scans and sorts their points into cells, within limited memory.
+///
+/// All threads together keep at most about `max_bytes` of sums. A thread that exceeds its share passes its sums to
+/// `take` and starts again with an empty grid; at the end all threads pass their remaining sums. The calls of `take` do
+/// not overlap and have no fixed order. Each point is in exactly one of the grids. Throws like accumulateScans().
 GAUSSMAP_API PointCounts accumulateScansInParts(const Scans& scans, const AccumulateOptions& options,
                                                 std::size_t max_bytes,
                                                 const std::function<void(const MomentGrid<3>&)>& take,
                                                 const ReportProgress& progress = {});
 
-/// The accepted points of scans, in their order [m, map frame]: the reference that a map is compared with.
-/// options.resolution is not used.
+/// Returns the accepted points of all scans, in their order [m, map frame]. A map can be compared with these points.
+/// AccumulateOptions::resolution is not used. Throws FileError, and std::invalid_argument for max_range.
 GAUSSMAP_API std::vector<Vector<3>> readPoints(const Scans& scans, const AccumulateOptions& options);
 
-/// Cells of moments -> the whole map: sorts them into key order, then makes every coarser scale from the finer one
-/// by moment matching (Yguel 2009, eqs. (9), (10)), one Gaussian per cell. Points are not touched again.
-/// Throws std::invalid_argument if the grid's resolution is not the options'.
+/// Builds the map from moments per cell, with one Gaussian per cell at every scale.
+///
+/// The cells are sorted into key order. Every coarser scale is the moment match of the finer one, Yguel 2009 eqs. (9),
+/// (10). Throws std::invalid_argument if the options are not usable or the resolutions of the grid and the options
+/// differ.
 template <int D>
 GAUSSMAP_API GaussianMap<D> build(const MomentGrid<D>& grid, const MapOptions& options);
 
-/// Points [m, map frame] -> map. Non-finite points are left out. Throws std::out_of_range, naming the point, if one
-/// is too far for 32-bit cells.
+/// Builds the map from points [m, map frame], with one Gaussian per cell at every scale. Non-finite points are ignored.
+/// Throws std::out_of_range if a point lies beyond the range of 32-bit cell indices; the message gives the point.
 template <int D>
 GAUSSMAP_API GaussianMap<D> build(const std::vector<Vector<D>>& points, const MapOptions& options);
 
-/// The coarser scales for a finest scale that is given as plain cells of Gaussians (an imported map), in any order.
-/// Sets keys, Gaussians and links. Throws std::invalid_argument, saying what, if the cells are no scale.
+/// Builds the map from a finest scale that is given as Gaussians (an imported map), with one Gaussian per cell.
+///
+/// The function uses only the keys and Gaussians of `finest`, in any order of the cells. It sets the key order, the
+/// coarser scales and the links. Throws std::invalid_argument if `finest` is not a valid scale; the message gives the
+/// reason.
 template <int D>
 GAUSSMAP_API GaussianMap<D> build(const MapScale<D>& finest, const MapOptions& options);
 
-/// Scans -> map, one Gaussian per cell at every scale. options.resolution replaces that of `reading`. `counts`, if
-/// given, says where the points went. Throws as accumulateScans() and build().
+/// Builds the map from scans, with one Gaussian per cell at every scale.
+///
+/// The resolution of `options` replaces that of `reading`. If `counts` is given, it receives the numbers of accepted
+/// and dropped points. Throws like accumulateScans() and build() from moments.
 GAUSSMAP_API GaussianMap<3> build(const Scans& scans, const MapOptions& options = {}, AccumulateOptions reading = {},
                                   PointCounts* counts = nullptr);
 

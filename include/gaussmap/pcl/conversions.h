@@ -17,18 +17,21 @@
 
 namespace gaussmap {
 
-/// The Gaussians of all scales (coarsest first) or of one, in key order. Means are relative to sensor_origin_, which is
-/// zero but for maps so far away that floats would lose a thousandth of a finest cell.
-/// Throws std::out_of_range for a scale that the map does not have.
+/// Converts the Gaussians of all scales (coarsest first), or of one scale, to a PCL cloud in key order.
+///
+/// The means are relative to sensor_origin_. It is zero, unless floats would lose a thousandth of a finest cell far
+/// from the origin. Throws std::out_of_range if the map does not have the scale.
 GAUSSMAP_API pcl::PointCloud<PointGaussian> toPointCloud(const GaussianMapOctree& map,
                                                          std::optional<int> scale = std::nullopt);
 
-/// The map such a cloud describes, see fromRecords(). Throws std::invalid_argument, saying what, if it describes none.
+/// Converts a PCL cloud of Gaussians to a map, see fromRecords(). Throws std::invalid_argument if the cloud does not
+/// form a map; the message gives the reason.
 GAUSSMAP_API GaussianMapOctree fromPointCloud(const pcl::PointCloud<PointGaussian>& cloud);
 
-/// The map of a cloud in the map frame, made on `threads` threads (0 = all), which never show in it; non-finite points
-/// are left out. Any point type with x, y, z.
-/// Throws std::invalid_argument on unusable options, std::out_of_range for a point too far for the cells.
+/// Builds the map of a cloud in the map frame, for any point type with x, y, z. `threads`: 0 = all cores.
+///
+/// Non-finite points are ignored. Throws std::invalid_argument if an option is not usable, and std::out_of_range if a
+/// point lies beyond the range of 32-bit cell indices.
 template <typename PointT>
 GaussianMapOctree buildMap(const pcl::PointCloud<PointT>& cloud, const MapOptions& options = {}, int threads = 0) {
   static_assert(sizeof(PointT) % sizeof(float) == 0);
@@ -36,14 +39,17 @@ GaussianMapOctree buildMap(const pcl::PointCloud<PointT>& cloud, const MapOption
   return build<3>(countPoints(Grid<3>(options).options().resolution, points, threads), options);
 }
 
-/// The nearest ranges as PCL's range image (pixels of equal angles, LASER_FRAME: x forward, y left, z up), with the
-/// sensor at `sensor` in the map frame. Of an image without any return: an empty one. Throws std::invalid_argument for
-/// a camera's image: PCL has another class for those.
+/// Converts the nearest ranges of a range image to PCL's range image, with the sensor at `sensor` in the map frame.
+///
+/// PCL's image has pixels of equal angles and the frame LASER_FRAME: x forward, y left, z up. An image without returns
+/// becomes an empty image. Throws std::invalid_argument for the image of a camera, because PCL has another class for
+/// it.
 GAUSSMAP_API pcl::RangeImage toPclRangeImage(const RangeImage& image, const Pose& sensor);
 
-/// The other way round: rows and columns are those of PCL's image; its far ranges (+infinity) and what it has not
-/// observed become pixels without a return. `sensor` is the pose that PCL's image was made with.
-/// Throws std::invalid_argument if the image has no angular resolution (it is empty).
+/// Converts PCL's range image to a range image with the same angular resolution.
+///
+/// Far ranges (+infinity) and unobserved pixels become pixels without a return. `sensor` is the pose with which PCL's
+/// image was made. Throws std::invalid_argument if the image is empty or has no angular resolution.
 GAUSSMAP_API RangeImage fromPclRangeImage(const pcl::RangeImage& image, const Pose& sensor);
 
 }  // namespace gaussmap

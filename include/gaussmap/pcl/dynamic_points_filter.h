@@ -6,7 +6,7 @@
 #include <pcl/point_types.h>
 #include <pcl/filters/impl/filter.hpp>
 #include <pcl/filters/impl/filter_indices.hpp>
-#include <pcl/impl/pcl_base.hpp>  // a user's own point type has no other
+#include <pcl/impl/pcl_base.hpp>  // required for user-defined point types
 
 #include <memory>
 #include <stdexcept>
@@ -19,40 +19,50 @@
 
 namespace gaussmap {
 
-/// What becomes of points where the map has no cell.
+/// What happens to points where the map has no cell.
 enum class UnknownSpace {
-  Keep,   ///< nothing is known of them
-  Remove  ///< a map that is kept up to date has cells wherever something stands: what it has forgotten is free
+  Keep,   ///< the points are kept, because nothing is known about the place
+  Remove  ///< the points are removed: in an up-to-date map, a place without a cell is free
 };
 
+/// Options of DynamicPointsFilter.
 struct DynamicPointsFilterOptions {
-  ScanFrame frame = ScanFrame::Sensor;  ///< of the points; Sensor: sensor_origin_ and sensor_orientation_ move them
-  float threshold = 0.0f;               ///< a place with log-odds of occupancy below it is free
-  UnknownSpace unknown = UnknownSpace::Keep;
+  /// Frame of the points. ScanFrame::Sensor: sensor_origin_ and sensor_orientation_ transform them into the map frame.
+  ScanFrame frame = ScanFrame::Sensor;
+  float threshold = 0.0f;                     ///< a place is free if its log-odds of occupancy are below this value
+  UnknownSpace unknown = UnknownSpace::Keep;  ///< for points where the map has no cell
 };
 
-/// Removes the points of moving objects: those at places that a map's occupancy calls free (OnlineMapper,
-/// withOccupancy(); a map that was made in one go calls nothing free). Indices, setNegative(), removed indices,
-/// setKeepOrganized() and setUserFilterValue() are as in pcl::PassThrough; points that are not finite are removed
-/// either way. Any point type with x, y, z. Without a map, or with a pose that is none, an error is printed and nothing
-/// passes.
+/// Removes the points of moving objects: the points at places that are free according to a map's occupancy.
+///
+/// The occupancy comes from OnlineMapper; in a map of build(), no place is free. Indices, setNegative(), removed
+/// indices, setKeepOrganized() and setUserFilterValue() work as in pcl::PassThrough. Non-finite points are always
+/// removed. Any point type with x, y, z can be used. Without a map, or if the pose is not valid, the filter prints an
+/// error and returns no points.
 template <typename PointT>
 class GAUSSMAP_API DynamicPointsFilter : public pcl::FilterIndices<PointT> {
  public:
-  using Ptr = pcl::shared_ptr<DynamicPointsFilter>;
-  using ConstPtr = pcl::shared_ptr<const DynamicPointsFilter>;
-  using MapConstPtr = std::shared_ptr<const GaussianMapOctree>;
+  using Ptr = pcl::shared_ptr<DynamicPointsFilter>;              ///< shared pointer
+  using ConstPtr = pcl::shared_ptr<const DynamicPointsFilter>;   ///< shared pointer to const
+  using MapConstPtr = std::shared_ptr<const GaussianMapOctree>;  ///< shared pointer to the map
 
+  /// Makes a filter without a map. `extract_removed_indices` enables getRemovedIndices().
   explicit DynamicPointsFilter(bool extract_removed_indices = false, const DynamicPointsFilterOptions& options = {})
       : pcl::FilterIndices<PointT>(extract_removed_indices), options_(options) {
     this->filter_name_ = "DynamicPointsFilter";
   }
 
+  /// Sets the map whose occupancy decides.
   void setMap(MapConstPtr map) { map_ = std::move(map); }
+  /// Returns the map.
   const MapConstPtr& getMap() const { return map_; }
+  /// Sets the frame of the points, see DynamicPointsFilterOptions.
   void setFrame(ScanFrame frame) { options_.frame = frame; }
+  /// Sets the log-odds below which a place is free.
   void setThreshold(float log_odds) { options_.threshold = log_odds; }
+  /// Sets what happens to points where the map has no cell.
   void setUnknownSpace(UnknownSpace unknown) { options_.unknown = unknown; }
+  /// Returns the options.
   const DynamicPointsFilterOptions& options() const { return options_; }
 
  protected:

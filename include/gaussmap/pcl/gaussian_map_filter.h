@@ -12,61 +12,72 @@
 
 namespace gaussmap {
 
-/// What GaussianMapFilter gives out, a point a Gaussian.
+/// The points that GaussianMapFilter returns, one per Gaussian.
 enum class FilterOutput {
-  Means,   ///< the means: nearest to the input
-  Samples  ///< of each Gaussian the point nearest to its mean: nothing that was not measured
+  Means,   ///< the means, which are closest to the input
+  Samples  ///< the input points nearest to the means, so every output point was measured
 };
 
+/// Options of GaussianMapFilter.
 struct GaussianMapFilterOptions {
-  std::size_t budget = 10000;  ///< most points that are kept, >= 1
-  double max_error = 0.0;      ///< > 0: as few points (within the budget) as have 95 % of the input nearer than it [m]
-  FilterOutput output = FilterOutput::Means;
-  SplitRule detail = SplitRule::Distance;  ///< Shape: few points on planes; max_error is then the distance to the plane
-  int rounds = 3;                          ///< SplitPointsOptions::rounds
-  int threads = 0;                         ///< 0 = all; never shows in the result
+  std::size_t budget = 10000;  ///< maximum number of points kept, >= 1
+  /// If > 0: keeps the smallest number of points (within the budget) for which 95 % of the input lie within this
+  /// distance [m]. If 0: the budget decides.
+  double max_error = 0.0;
+  FilterOutput output = FilterOutput::Means;  ///< means or samples
+  /// Where the output is dense. SplitRule::Shape: few points on planes; max_error is then the distance from the plane.
+  SplitRule detail = SplitRule::Distance;
+  int rounds = 3;   ///< SplitPointsOptions::rounds
+  int threads = 0;  ///< 0 = all cores
 };
 
-/// Downsampling that is driven by the error: a cloud of at most so many points, or of as few as an error allows. Used
-/// like pcl::VoxelGrid; for any registered point type with x, y, z.
+/// Downsamples a cloud to a maximum number of points, or to the smallest number that keeps an error limit. It is used
+/// like pcl::VoxelGrid, for any registered point type with x, y, z.
 ///
-/// Each kept point stands for the Gaussian of some points of the input. Of means, every other field is averaged over
-/// these points (colours by channel; integers are rounded; of normals the direction; values that are not finite do not
-/// count), labels are those of the point nearest to the mean. Samples are points of the input as they are. Where a
-/// point then has no normal but its type has the fields, normal and curvature are those of the input's surface there
-/// (pointNormals()), seen from sensor_origin_.
+/// Each output point represents the Gaussian of some input points.
+/// - With FilterOutput::Means, all other fields are averaged over these points: colours by channel, integers rounded,
+///   normals by direction, non-finite values ignored. A label is that of the point nearest to the mean.
+/// - With FilterOutput::Samples, output points are unchanged input points.
+/// - An output point without a normal gets the normal and curvature of the input's surface (see pointNormals()), seen
+///   from sensor_origin_. This applies to point types with these fields.
 ///
-/// As with pcl::VoxelGrid the output is not organised and has no point that is not finite. setIndices() chooses points.
-/// getRemovedIndices(), if asked for in the constructor: the points of the input that are not finite, and those that
-/// are not the nearest to the mean of their Gaussian. A filter without cloud gives nothing; unusable options print an
-/// error and give an empty cloud.
+/// As with pcl::VoxelGrid, the output is not organised and has only finite points. setIndices() selects input points.
+/// getRemovedIndices(), if enabled in the constructor, returns the non-finite input points and those that are not
+/// nearest to the mean of their Gaussian. Without an input cloud the filter returns nothing. If an option is out of
+/// range, it prints an error and returns an empty cloud.
 template <typename PointT>
 class GAUSSMAP_API GaussianMapFilter : public pcl::Filter<PointT> {
  public:
-  using Ptr = pcl::shared_ptr<GaussianMapFilter>;
-  using ConstPtr = pcl::shared_ptr<const GaussianMapFilter>;
-  using PointCloud = typename pcl::Filter<PointT>::PointCloud;
+  using Ptr = pcl::shared_ptr<GaussianMapFilter>;               ///< shared pointer
+  using ConstPtr = pcl::shared_ptr<const GaussianMapFilter>;    ///< shared pointer to const
+  using PointCloud = typename pcl::Filter<PointT>::PointCloud;  ///< input and output
 
+  /// Makes a filter. `extract_removed_indices` enables getRemovedIndices().
   explicit GaussianMapFilter(bool extract_removed_indices = false, const GaussianMapFilterOptions& options = {})
       : pcl::Filter<PointT>(extract_removed_indices), options_(options) {
     this->filter_name_ = "GaussianMapFilter";
   }
 
-  /// Most points that are kept.
+  /// Sets the maximum number of points kept.
   void setBudget(std::size_t points) { options_.budget = points; }
-  /// 95 % of the input shall lie within this distance of a kept point [m]; 0: the budget decides. The budget holds too:
-  /// error() tells what it allowed.
+  /// Sets the distance from an output point within which 95 % of the input shall lie [m]; 0: the budget decides. The
+  /// budget applies in both cases; error() returns the distance that it allowed.
   void setMaxError(double metres) { options_.max_error = metres; }
+  /// Selects means or samples.
   void setOutput(FilterOutput output) { options_.output = output; }
+  /// Selects where the output is dense.
   void setDetail(SplitRule detail) { options_.detail = detail; }
+  /// Sets the number of threads; 0 = all cores.
   void setNumberOfThreads(int threads) { options_.threads = threads; }
+  /// Returns the options.
   const GaussianMapFilterOptions& options() const { return options_; }
 
-  /// Of the last filter(): for each point of the input the kept point that stands for it, -1 for none.
+  /// Returns, for each input point of the last filter(), the index of the output point that represents it, or -1.
   const std::vector<std::int32_t>& getLabels() const { return labels_; }
-  /// Of the last filter(): the Gaussian of each kept point, map frame of the cloud; the covariance may be singular.
+  /// Returns the Gaussian of each output point of the last filter(), in the frame of the cloud. A covariance can be
+  /// singular.
   const std::vector<Gaussian<3>>& getGaussians() const { return gaussians_; }
-  /// Of the last filter(): 95 % of the input lie within it of the kept point that stands for them [m].
+  /// Returns the error of the last filter(): 95 % of the input lie within this distance of their output point [m].
   double error() const { return error_; }
 
  protected:

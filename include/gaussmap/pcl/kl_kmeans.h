@@ -3,7 +3,7 @@
 
 #include <pcl/PointIndices.h>
 #include <pcl/pcl_base.h>
-#include <pcl/impl/pcl_base.hpp>  // PointGaussian has no other
+#include <pcl/impl/pcl_base.hpp>  // required for PointGaussian
 
 #include <vector>
 
@@ -13,24 +13,29 @@
 
 namespace gaussmap {
 
-/// KLKMeans for a cloud of Gaussians (toPointCloud()): setInputCloud(), setIndices() if only some count,
-/// setNumberOfClusters(), cluster(). Points whose mean, covariance or weight is not finite are in no cluster.
-/// What cannot be clustered (no cloud, no clusters, a covariance that is not positive definite) prints an error and
-/// gives nothing.
+/// Clusters a cloud of Gaussians (see toPointCloud()) with KLKMeans.
+///
+/// Call setInputCloud(), setIndices() to select some points, setNumberOfClusters() and cluster(). Points with a
+/// non-finite mean, covariance or weight are in no cluster. If the input is not valid (no cloud, no clusters, or a
+/// covariance that is not positive definite), cluster() prints an error and returns nothing.
 class GAUSSMAP_API PointCloudKLKMeans : public pcl::PCLBase<PointGaussian> {
  public:
+  /// Stores the options. They are checked by cluster().
   explicit PointCloudKLKMeans(const KLKMeansOptions& options = {}) : options_(options) {}
 
+  /// Sets the number of clusters.
   void setNumberOfClusters(int clusters) { options_.k = clusters; }
+  /// Sets the seed of the random numbers.
   void setSeed(std::uint64_t seed) { options_.seed = seed; }
 
-  /// The clusters' points, none empty, at most as many as asked for; indices of the input cloud, rising.
+  /// Computes the clusters: the indices of their points in the input cloud, ascending. No cluster is empty. There are
+  /// at most as many clusters as set.
   void cluster(std::vector<pcl::PointIndices>& clusters);
 
-  /// Of the last cluster(): the Gaussian of each cluster, the moment match of its members. Scale, cell side and
-  /// occupancy are the largest of them, the cell is that of its first member.
+  /// Returns the Gaussian of each cluster of the last cluster(): the moment match of its members. Scale, cell side and
+  /// occupancy are the maximum over the members. The cell is that of the first member.
   const pcl::PointCloud<PointGaussian>& getReferences() const { return references_; }
-  /// Of the last cluster(): its distortion, iterations and whether it converged.
+  /// Returns the full result of the last cluster(): distortion, iterations, and whether it converged.
   const KLClustering<3>& result() const { return result_; }
 
  private:

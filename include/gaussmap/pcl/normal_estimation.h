@@ -4,7 +4,7 @@
 #include <pcl/console/print.h>
 #include <pcl/features/feature.h>
 #include <pcl/point_types.h>
-#include <pcl/impl/pcl_base.hpp>  // a user's own point type has no other
+#include <pcl/impl/pcl_base.hpp>  // required for user-defined point types
 
 #include <algorithm>
 #include <cmath>
@@ -16,49 +16,57 @@
 
 namespace gaussmap {
 
-/// Normals and curvatures of a cloud from cells of several sizes, pointNormals(): used like pcl::NormalEstimationOMP,
-/// without a search for neighbours, so a search method and a radius have no effect (a radius is warned of). Any point
-/// type with x, y, z; PointOutT needs normal and curvature.
+/// Estimates normals and curvatures of a cloud with pointNormals(). It is used like pcl::NormalEstimationOMP.
 ///
-/// As with PCL's own class: normals look towards setViewPoint(), else the sensor's origin of the input cloud; there are
-/// normals for the points of setIndices(); setSearchSurface() gives the points that they are made of; an organised
-/// cloud stays organised; where there is no normal there is NaN, and the output is not dense.
+/// The algorithm does not search for neighbours, so a search method and a radius have no effect (a radius causes a
+/// warning). Any point type with x, y, z can be used; PointOutT needs a normal and a curvature.
+///
+/// As with PCL's own class, normals point towards setViewPoint(), or otherwise towards the sensor's origin of the input
+/// cloud. setIndices() selects the points that get normals. setSearchSurface() sets the points from which the normals
+/// are computed. An organised cloud stays organised. A point without a normal gets NaN, and the output is then not
+/// dense.
 template <typename PointInT, typename PointOutT = pcl::Normal>
 class GAUSSMAP_API CellNormalEstimation : public pcl::Feature<PointInT, PointOutT> {
   using Base = pcl::Feature<PointInT, PointOutT>;
 
  public:
-  using Ptr = pcl::shared_ptr<CellNormalEstimation>;
-  using ConstPtr = pcl::shared_ptr<const CellNormalEstimation>;
-  using PointCloudConstPtr = typename Base::PointCloudConstPtr;
-  using PointCloudOut = typename Base::PointCloudOut;
+  using Ptr = pcl::shared_ptr<CellNormalEstimation>;             ///< shared pointer
+  using ConstPtr = pcl::shared_ptr<const CellNormalEstimation>;  ///< shared pointer to const
+  using PointCloudConstPtr = typename Base::PointCloudConstPtr;  ///< input
+  using PointCloudOut = typename Base::PointCloudOut;            ///< output
 
+  /// Stores the options. They are checked by compute().
   explicit CellNormalEstimation(const PointNormalOptions& options = {}) : options_(options) {
     this->feature_name_ = "CellNormalEstimation";
   }
 
-  /// The points that a plane is made of are at least so many. setKSearch(k) does the same with 0.7 k: the planes are
-  /// then made of about k points.
+  /// Sets the minimum number of points per plane. setKSearch(k) sets it to 0.7 k, so that the planes have about k
+  /// points.
   void setMinPoints(int points) {
     options_.min_points = points;
     this->k_ = 0;
   }
-  /// 0 = all; never shows in the result.
+  /// Sets the number of threads; 0 = all cores.
   void setNumberOfThreads(int threads) { options_.threads = threads; }
 
+  /// Sets the cloud whose points get normals. Its sensor origin becomes the viewpoint, unless setViewPoint() was
+  /// called.
   void setInputCloud(const PointCloudConstPtr& cloud) override {
     this->input_ = cloud;
     if (use_sensor_origin_ && cloud) viewpoint_ = cloud->sensor_origin_.template head<3>();
   }
+  /// Sets the viewpoint.
   void setViewPoint(float x, float y, float z) {
     viewpoint_ = {x, y, z};
     use_sensor_origin_ = false;
   }
+  /// Returns the viewpoint.
   void getViewPoint(float& x, float& y, float& z) const {
     x = viewpoint_.x();
     y = viewpoint_.y();
     z = viewpoint_.z();
   }
+  /// Uses the sensor origin of the input cloud as the viewpoint again.
   void useSensorOriginAsViewPoint() {
     use_sensor_origin_ = true;
     viewpoint_ = this->input_ ? Eigen::Vector3f(this->input_->sensor_origin_.template head<3>())
@@ -66,7 +74,7 @@ class GAUSSMAP_API CellNormalEstimation : public pcl::Feature<PointInT, PointOut
   }
 
  protected:
-  /// No search tree is made.
+  /// Checks the input. Unlike PCL's version, it builds no search tree.
   bool initCompute() override {
     if (!pcl::PCLBase<PointInT>::initCompute() || this->input_->empty()) {
       PCL_ERROR("[gaussmap::%s::compute] %s\n", this->getClassName().c_str(),
@@ -122,7 +130,7 @@ class GAUSSMAP_API CellNormalEstimation : public pcl::Feature<PointInT, PointOut
   bool use_sensor_origin_ = true;
 };
 
-/// The name before version 0.2. There was never a map in it.
+/// The name before version 0.2. It was misleading, because the class uses no map.
 template <typename PointInT, typename PointOutT = pcl::Normal>
 using GaussianMapNormalEstimation [[deprecated("use CellNormalEstimation")]] =
     CellNormalEstimation<PointInT, PointOutT>;

@@ -2,9 +2,6 @@
 // header only
 #pragma once
 
-#ifndef PCL_NO_PRECOMPILE
-#define PCL_NO_PRECOMPILE
-#endif
 #include <pcl/memory.h>
 #include <pcl/pcl_macros.h>
 #include <pcl/point_types.h>
@@ -14,20 +11,23 @@
 
 namespace gaussmap {
 
-// PCL's macro for x y z makes an anonymous struct in a union, which the standard does not know.
+// PCL's macro for x y z makes an anonymous struct in a union, which is not standard C++.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpedantic"
 
-/// One Gaussian of a map as a PCL point: x y z is the mean, so that every PCL tool shows and filters it.
-/// The fields are those of the PCD files that gaussmap writes.
+/// One Gaussian of a map as a PCL point. x y z is the mean, so any PCL tool can show and filter the cloud. The fields
+/// are those of the PCD files of savePcd(). PCL's templates are not compiled for this type: define PCL_NO_PRECOMPILE
+/// before the first PCL header if you use them with it, such as pcl::PassThrough.
 struct EIGEN_ALIGN16 PointGaussian {
-  PCL_ADD_POINT4D;                      ///< mean [m]
-  float covariance[6];                  ///< xx xy xz yy yz zz [m^2]
-  float weight;                         ///< points
-  float occupancy;                      ///< log-odds in [-10, 10]
-  float cell_side;                      ///< [m]
-  float scale;                          ///< 0 = finest; a float because pcl::PassThrough filters by nothing else
-  std::int32_t cell_x, cell_y, cell_z;  ///< key of its cell
+  PCL_ADD_POINT4D;      ///< mean [m]
+  float covariance[6];  ///< xx xy xz yy yz zz [m^2]
+  float weight;         ///< number of points
+  float occupancy;      ///< log-odds in [-10, 10]
+  float cell_side;      ///< side of its cell [m]
+  float scale;          ///< 0 = finest; a float because pcl::PassThrough filters only floats
+  std::int32_t cell_x,  ///< key of its cell, x
+      cell_y,           ///< key of its cell, y
+      cell_z;           ///< key of its cell, z
   PCL_MAKE_ALIGNED_OPERATOR_NEW
 };
 

@@ -17,28 +17,30 @@
 
 namespace gaussmap {
 
-/// A kd-tree that is made when it is first asked. A point that is not finite, or a tree of nothing, has no neighbour:
-/// the distance is then infinite.
+/// A kd-tree that is built at the first search. If the point is not finite or the tree is empty, the search finds no
+/// neighbour, and the distance is infinite.
 template <typename PointT>
 class LazyKdTree : public pcl::search::KdTree<PointT> {
   using Base = pcl::search::KdTree<PointT>;
 
  public:
-  using LazyPtr = pcl::shared_ptr<LazyKdTree>;
+  using LazyPtr = pcl::shared_ptr<LazyKdTree>;  ///< shared pointer
   using typename Base::PointCloudConstPtr;
 
-  /// Unlike setInputCloud(), this makes no tree yet.
+  /// Sets the cloud. Unlike setInputCloud(), this function does not build the tree yet.
   void setCloud(const PointCloudConstPtr& cloud) {
     this->input_ = cloud;
     made_ = false;
   }
 
+  /// Searches the `k` nearest neighbours of a point, as in PCL.
   int nearestKSearch(const PointT& point, int k, pcl::Indices& indices, std::vector<float>& squared) const override {
     if (make(point)) return Base::nearestKSearch(point, k, indices, squared);
     indices.assign(1, 0);
     squared.assign(1, std::numeric_limits<float>::infinity());
     return 0;
   }
+  /// Searches all neighbours of a point within `radius` [m], as in PCL.
   int radiusSearch(const PointT& point, double radius, pcl::Indices& indices, std::vector<float>& squared,
                    unsigned int most = 0) const override {
     if (make(point)) return Base::radiusSearch(point, radius, indices, squared, most);
@@ -50,7 +52,7 @@ class LazyKdTree : public pcl::search::KdTree<PointT> {
   using Base::radiusSearch;
 
  private:
-  /// False if there is nothing to look in or for.
+  /// Builds the tree if necessary. Returns false if there is no cloud or the point is not finite.
   bool make(const PointT& point) const {
     if (!this->input_ || !point.getVector3fMap().allFinite()) return false;
     if (!made_) this->tree_->setInputCloud(this->input_);
@@ -61,57 +63,65 @@ class LazyKdTree : public pcl::search::KdTree<PointT> {
   mutable bool made_ = false;
 };
 
+/// Options of GaussianMapRegistration.
 struct GaussianMapRegistrationOptions {
-  MapOptions map{0.5, 3, 4, 0.0};  ///< of the map that is made of a target cloud
-  double budget = 3.0;             ///< Gaussians of its coarse scales per cell, PerCell::gaussians
-  RegistrationOptions registration;
+  MapOptions map{0.5, 3, 4, 0.0};    ///< of the map that is built from a target cloud
+  double budget = 3.0;               ///< Gaussians per cell of its coarse scales, PerCell::gaussians
+  RegistrationOptions registration;  ///< of registerScan()
 };
 
-/// registerScan() for PCL: used like pcl::NormalDistributionsTransform. The target is a cloud, of which a map is made
-/// once, or a map that was made before. Any point type with x, y, z; neither normals nor covariances are needed.
+/// Registers a cloud to a map with registerScan(). It is used like pcl::NormalDistributionsTransform.
 ///
-/// As with PCL's own classes: points that are not finite count for nothing, setIndices() chooses points of the source,
-/// errors are printed and leave hasConverged() false, final transformation and output then being those of the guess.
+/// The target is a cloud, from which a map is built once, or an existing map. Any point type with x, y, z can be used;
+/// normals and covariances are not needed.
+///
+/// As with PCL's own classes, non-finite points are ignored, and setIndices() selects points of the source. Errors are
+/// printed, and hasConverged() is then false; final transformation and output are those of the guess.
 /// setMaximumIterations(), setTransformationEpsilon() (a squared length) and setTransformationRotationEpsilon() (a
-/// cosine) hold for each step from coarse to fine; the constructor takes them from the options. What PCL offers to
-/// choose correspondences has no effect. The kd-tree of the target is made when getFitnessScore() first asks for it.
+/// cosine) apply to each step from coarse to fine. The constructor takes their values from the options. PCL's settings
+/// of correspondences have no effect. The kd-tree of the target is built at the first call of getFitnessScore().
 template <typename PointSource, typename PointTarget, typename Scalar = float>
 class GAUSSMAP_API GaussianMapRegistration : public pcl::Registration<PointSource, PointTarget, Scalar> {
   using Base = pcl::Registration<PointSource, PointTarget, Scalar>;
 
  public:
-  using Ptr = pcl::shared_ptr<GaussianMapRegistration>;
-  using ConstPtr = pcl::shared_ptr<const GaussianMapRegistration>;
-  using Matrix4 = typename Base::Matrix4;
-  using PointCloudSource = typename Base::PointCloudSource;
-  using PointCloudTarget = typename Base::PointCloudTarget;
-  using PointCloudTargetConstPtr = typename Base::PointCloudTargetConstPtr;
-  using MapConstPtr = std::shared_ptr<const GaussianMapOctree>;
+  using Ptr = pcl::shared_ptr<GaussianMapRegistration>;                      ///< shared pointer
+  using ConstPtr = pcl::shared_ptr<const GaussianMapRegistration>;           ///< shared pointer to const
+  using Matrix4 = typename Base::Matrix4;                                    ///< 4 x 4 transform
+  using PointCloudSource = typename Base::PointCloudSource;                  ///< source cloud
+  using PointCloudTarget = typename Base::PointCloudTarget;                  ///< target cloud
+  using PointCloudTargetConstPtr = typename Base::PointCloudTargetConstPtr;  ///< shared pointer to the target cloud
+  using MapConstPtr = std::shared_ptr<const GaussianMapOctree>;              ///< shared pointer to the target map
 
+  /// Stores the options. They are checked by align().
   explicit GaussianMapRegistration(const GaussianMapRegistrationOptions& options = {});
 
-  /// The cloud to align with; its map is made by the next align(). An empty cloud changes nothing.
+  /// Sets the target cloud. The next align() builds its map. An empty cloud is refused and changes nothing.
   void setInputTarget(const PointCloudTargetConstPtr& cloud) override;
-  /// The map to align with. The means of its finest Gaussians become getInputTarget(). False for none or an empty one:
-  /// an error is printed, nothing changes.
+  /// Sets the target map. The means of its leaves become getInputTarget(). If the map is null or empty, prints an
+  /// error, changes nothing and returns false.
   bool setTargetMap(const MapConstPtr& map);
-  /// The same for a .gmap or a PCD file of Gaussians.
+  /// Sets the target map from a .gmap file or a PCD file of Gaussians. If the file cannot be read, prints an error,
+  /// changes nothing and returns false.
   bool setTargetMap(const std::filesystem::path& path);
-  /// The map to align with, made now if need be. Null if there is none.
+  /// Returns the target map, and builds it from the target cloud if necessary. Returns null if there is no target.
   MapConstPtr getTargetMap();
 
-  /// Side of the finest cells of the map that is made of a target cloud [m], as in pcl::NormalDistributionsTransform.
+  /// Sets the side of the finest cells of the map that is built from a target cloud [m], as in
+  /// pcl::NormalDistributionsTransform.
   void setResolution(double side);
+  /// Returns the side of these cells [m].
   double getResolution() const { return options_.map.resolution; }
-  /// 0 = all; never shows in the result.
+  /// Sets the number of threads; 0 = all cores.
   void setNumberOfThreads(int threads) { options_.registration.threads = threads; }
 
-  /// Of (x, y, z [m], rotation vector about the origin of the source [rad]), axes of the target; zero if nothing is
-  /// known.
-  const Eigen::Matrix<double, 6, 6>& getPoseCovariance() const { return result_.covariance; }
-  /// True if the source does not tell some direction of the pose, as in a corridor, or nothing.
+  /// Returns the covariance of (x, y, z [m], rotation vector about the origin of the source [rad]), along the axes of
+  /// the target. It is zero if there is no information about the pose.
+  const PoseCovariance& getPoseCovariance() const { return result_.covariance; }
+  /// Returns true if some direction of the pose is unobservable, for example along a corridor, or if there is no
+  /// result.
   bool isDegenerate() const { return result_.degenerate; }
-  /// All that is known of the last align().
+  /// Returns the full result of the last align().
   const RegistrationResult& result() const { return result_; }
 
  protected:
@@ -124,16 +134,17 @@ class GAUSSMAP_API GaussianMapRegistration : public pcl::Registration<PointSourc
 
   GaussianMapRegistrationOptions options_;
   RegistrationResult result_;
-  MapConstPtr map_;  // null: to be made of the target cloud
+  MapConstPtr map_;  // null: not yet built from the target cloud
   bool map_given_ = false;
   typename Tree::LazyPtr lazy_tree_;
 };
 
-/// The map that a target cloud is aligned with. Throws as build() and refine().
+/// Builds the map to which a source cloud is aligned from a target cloud. Throws like build() and refine().
 GAUSSMAP_API GaussianMapOctree buildTargetMap(const std::vector<Eigen::Vector3d>& points,
                                               const GaussianMapRegistrationOptions& options);
-/// A rigid 4 x 4 transform as a pose. Throws std::invalid_argument for one that is none.
+/// Converts a rigid 4 x 4 transform to a pose. Throws std::invalid_argument if the matrix is not a rigid transform.
 GAUSSMAP_API Pose poseOfMatrix(const Eigen::Matrix4d& matrix);
+/// Converts a pose to a 4 x 4 transform.
 GAUSSMAP_API Eigen::Matrix4d matrixOf(const Pose& pose);
 
 }  // namespace gaussmap

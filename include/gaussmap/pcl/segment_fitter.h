@@ -5,7 +5,7 @@
 #include <pcl/PointIndices.h>
 #include <pcl/console/print.h>
 #include <pcl/pcl_base.h>
-#include <pcl/impl/pcl_base.hpp>  // a user's own point type has no other
+#include <pcl/impl/pcl_base.hpp>  // required for user-defined point types
 
 #include <memory>
 #include <stdexcept>
@@ -19,22 +19,25 @@
 
 namespace gaussmap {
 
-/// SegmentFitter for PCL's clouds, one a sweep: setInputCloud(), setIndices() if only some points count, fit(); the
-/// next cloud, fit() ... and map(). Points in the SENSOR frame, its pose in sensor_origin_ and sensor_orientation_, as
-/// PCL's readers fill them. Any point type with x, y, z.
+/// Builds a map of segments from PCL clouds with SegmentFitter, one cloud per sweep.
+///
+/// Call setInputCloud(), setIndices() to select some points, and fit() for each cloud, then map(). The points are in
+/// the sensor frame, and the pose of the sensor is in sensor_origin_ and sensor_orientation_, as after PCL's readers.
+/// Any point type with x, y, z can be used.
 template <typename PointT>
 class GAUSSMAP_API PointCloudSegmentFitter : public pcl::PCLBase<PointT> {
  public:
-  /// Throws std::invalid_argument, naming the option.
+  /// Makes an empty map. Throws std::invalid_argument if an option is out of range; the message names the option.
   explicit PointCloudSegmentFitter(const SegmentFitterOptions& options = {},
                                    std::shared_ptr<SegmentUtility> utility = {})
       : fitter_(options, std::move(utility)) {}
 
-  /// What of a cloud counts: a horizontal slice of a three-dimensional one, a largest range.
+  /// Sets which points of a cloud are used: a horizontal slice of a three-dimensional cloud, and a maximum range.
   void setPlanarScan(const PlanarScanOptions& options) { planar_ = options; }
 
-  /// Adds the cloud to the map. A cloud that cannot be taken (none, in no plane, a pose that is none) changes nothing:
-  /// an error is printed, and the statistics are those of no beam; an empty one does so in silence.
+  /// Adds the cloud to the map. If the cloud is not usable (no cloud, not in a plane, or an invalid pose), prints an
+  /// error, changes nothing and returns statistics without beams. An empty cloud does the same without an error
+  /// message.
   SegmentStatistics fit() {
     if (!this->initCompute()) {
       PCL_ERROR("[gaussmap::PointCloudSegmentFitter::fit] no input cloud\n");
@@ -57,9 +60,11 @@ class GAUSSMAP_API PointCloudSegmentFitter : public pcl::PCLBase<PointT> {
     }
   }
 
-  /// The points of the input cloud on each segment of the map, as it is now, in its order: of each point the nearest
-  /// segment, if it lies within `tolerance` [m] (and in the slice, if there is one); map frame, seen from above. A
-  /// cloud that fit() would not take gives an error and nothing.
+  /// Computes the points of the input cloud on each segment of the current map, in the order of the map.
+  ///
+  /// A point belongs to the nearest segment, if the distance in the xy plane of the map frame is at most `tolerance`
+  /// [m]. With a slice, the point must also lie in the slice. If fit() would not accept the cloud because of its pose,
+  /// prints an error and returns nothing.
   void segmentIndices(std::vector<pcl::PointIndices>& segments, double tolerance = 0.1) {
     segments.clear();
     if (!this->initCompute()) {
@@ -94,7 +99,9 @@ class GAUSSMAP_API PointCloudSegmentFitter : public pcl::PCLBase<PointT> {
     this->deinitCompute();
   }
 
+  /// Returns a copy of the current map.
   SegmentMap map() const { return fitter_.map(); }
+  /// Returns the fitter.
   const SegmentFitter& fitter() const { return fitter_; }
 
  private:

@@ -9,31 +9,37 @@
 
 namespace gaussmap {
 
-/// Where normals go: three floats and a curvature a record, a record every `stride` floats.
+/// A view of memory for normals that the caller owns. Each record holds a normal (three floats) and a curvature.
 struct NormalsView {
-  float* normal = nullptr;
-  float* curvature = nullptr;
-  std::size_t stride = 4;
+  float* normal = nullptr;     ///< x of the first normal
+  float* curvature = nullptr;  ///< first curvature
+  std::size_t stride = 4;      ///< floats from one record to the next
 };
 
+/// Options of pointNormals().
 struct GAUSSMAP_API PointNormalOptions {
-  int min_points = 14;  ///< a plane goes through at least so many points (if there are), on average half as many more;
-                        ///< 3 ... 1000
-  Eigen::Vector3d viewpoint = Eigen::Vector3d::Zero();  ///< normals look towards it [m]
-  int threads = 0;                                      ///< 0 = all; never shows in the result
+  /// Minimum number of points per plane (if the cloud has that many), 3 to 1000. On average a plane has 1.5 times as
+  /// many.
+  int min_points = 14;
+  Eigen::Vector3d viewpoint = Eigen::Vector3d::Zero();  ///< normals point towards it [m]
+  int threads = 0;                                      ///< 0 = all cores
 };
 
-/// The normal of a surface at each query: that of the Gaussian of the points in the finest block of cells around it
-/// that holds min_points of them. Blocks are 3 and 5 cells wide (of the latter only cells at most one off in two of the
-/// axes), cells those of an octree, so that a block is at most 1.8 times as wide as the next finer one. No search for
-/// neighbours: one sort, one sum a cell, one plane a block. If all points together are fewer, the plane is theirs.
-/// The curvature is the share of the least variance in the sum of the three, 0 ... 1/3, as PCL has it.
+/// Computes the surface normal at each query point and returns the number of queries without a normal.
 ///
-/// Query i writes record i of `normals`: unit normal and curvature, or NaN if the query is not finite or the points of
-/// its block lie on a line. Non-finite points of the surface do not count. Returns how many queries have no normal.
-/// Cells are not split below 2^-21 of the extent of the cloud; the outermost hundredth of the points at either end of
-/// an axis does not count for that extent if it lies far off.
-/// Throws std::invalid_argument, naming the option, and for 2^31 points or more.
+/// The normal is that of the Gaussian of all surface points in a block of cells around the query. The function takes
+/// the finest block with at least min_points points, or all points if the cloud has fewer. The cells are those of an
+/// octree. Blocks are 3 or 5 cells wide; in a block of 5, a cell is two off the middle along at most one axis. A block
+/// is therefore at most 1.8 times as wide as the next finer one. The function does not search for neighbours: it needs
+/// one sort, one sum per cell, and one plane per block.
+///
+/// The curvature is the smallest variance divided by the sum of all three, 0 to 1/3, as in PCL. Query i writes record i
+/// of `normals`: a unit normal and the curvature. The record is NaN if the query is not finite or the points of its
+/// block lie on a line. Non-finite surface points are ignored.
+///
+/// Cells are not split below 2^-21 of the extent of the cloud. At both ends of each axis, the outermost 1 % of the
+/// points does not count for this extent if it lies far away. Throws std::invalid_argument if an option is out of range
+/// (the message names it) or there are 2^31 points or more.
 GAUSSMAP_API std::size_t pointNormals(const PointsView& surface, const PointsView& queries, const NormalsView& normals,
                                       const PointNormalOptions& options = {});
 

@@ -10,42 +10,51 @@
 
 namespace gaussmap {
 
-/// Which part is split next.
+/// Decides which part of the points is split next.
 enum class SplitRule {
-  Distance,  ///< the one whose points are farthest from its mean: every point comes near to some mean
-  Shape      ///< the one that is thickest: few parts on planes, many where the surface bends
+  Distance,  ///< the part whose points are farthest from its mean: every point gets a mean nearby
+  Shape      ///< the thickest part: few parts on planes, many where the surface is curved
 };
 
-/// The point that stands for a part.
+/// The point that represents a part.
 enum class PartPoint {
-  Mean,   ///< its mean: nearest to its points, but no point itself
-  Sample  ///< its point nearest to the mean
+  Mean,   ///< the mean of the part: close to its points, but not one of them
+  Sample  ///< the point of the part nearest to its mean
 };
 
+/// Options of splitPoints().
 struct SplitPointsOptions {
-  std::size_t max_parts = 10000;  ///< >= 1
-  double max_error = 0.0;         ///< > 0: as few parts as keep 95 % of the points within it [m]; 0: max_parts
-  SplitRule rule = SplitRule::Distance;
-  PartPoint part_point = PartPoint::Mean;  ///< what distances are measured from
-  int rounds = 3;                          ///< of k-means over the points after the splitting, Distance only, >= 0
-  int threads = 0;                         ///< 0 = all; never shows in the result
+  std::size_t max_parts = 10000;  ///< maximum number of parts, >= 1
+  /// If > 0: makes the smallest number of parts for which 95 % of the points have at most this error [m], but at most
+  /// max_parts. If 0: makes max_parts parts.
+  double max_error = 0.0;
+  SplitRule rule = SplitRule::Distance;    ///< which part is split next
+  PartPoint part_point = PartPoint::Mean;  ///< distances are measured from this point of a part
+  int rounds = 3;                          ///< rounds of k-means after the splitting, SplitRule::Distance only, >= 0
+  int threads = 0;                         ///< 0 = all cores
 };
 
-/// A partition of n points, parts in the order of their samples.
+/// A partition of n points. The parts are in the order of their samples.
 struct PointParts {
-  std::vector<std::uint32_t> labels;   ///< n, part of each point
-  std::vector<Gaussian<3>> gaussians;  ///< mean, covariance (divided by n, maybe singular) and number of points
-  std::vector<std::uint32_t> samples;  ///< the point of each part nearest to its mean, rising
-  double error = 0.0;                  ///< [m], 95 % of the points lie within it of the point of their part; with
-                                       ///< SplitRule::Shape of the plane through it
+  std::vector<std::uint32_t> labels;   ///< n, the part of each point
+  std::vector<Gaussian<3>> gaussians;  ///< per part: mean, covariance (divided by n, can be singular), number of points
+  std::vector<std::uint32_t> samples;  ///< per part: index of the point nearest to its mean, ascending
+  /// 95 % of the points are at most this far from the point of their part [m]. With SplitRule::Shape, the distance is
+  /// that from the plane through this point.
+  double error = 0.0;
 };
 
-/// Parts points from the top: the part of largest error is cut in two through its mean, across its longest axis, until
-/// there are enough. The error of a part is its standard deviation (Distance), or that across its plane and a little of
-/// the former (Shape), times the fourth root of its number of points: between what serves the mean error of all points
-/// and what serves the largest. A few rounds of k-means (Lloyd) then move every point to the nearest mean. Equal points
-/// stay together. O(n log(parts)).
-/// Points must be finite and fewer than 2^32. Throws std::invalid_argument, naming the option or the point.
+/// Splits points into parts, top-down: the part of largest error is cut in two through its mean, across its longest
+/// axis. This repeats until there are enough parts.
+///
+/// With SplitRule::Distance, the error of a part is its standard deviation. With SplitRule::Shape, it is the standard
+/// deviation across the plane of the part, plus a small share of the total standard deviation. Both are multiplied by
+/// the fourth root of the number of points, a compromise between a small mean error and a small maximum error.
+/// A few rounds of k-means (Lloyd) then move every point to the nearest mean, unless this makes the result worse. Equal
+/// points stay in the same part. The cost is O(n log(parts)).
+///
+/// Throws std::invalid_argument if an option is out of range or a point is not finite; the message gives the option or
+/// the point. There must be fewer than 2^32 points.
 GAUSSMAP_API PointParts splitPoints(const std::vector<Vector<3>>& points, const SplitPointsOptions& options = {});
 
 }  // namespace gaussmap

@@ -11,46 +11,51 @@
 
 namespace gaussmap {
 
+/// Options of registerScan() and registerMap().
 struct RegistrationOptions {
-  /// The scan becomes Gaussians of cells of this side [m], > 0, and of four times that for the coarse scales; 0: as the
-  /// map's finest cells.
+  /// Side of the cells [m] whose Gaussians represent the scan at the fine scales of the map, > 0. At the coarse scales
+  /// the cells are four times as wide. 0: the side of the map's finest cells.
   double resolution = 0.0;
-  std::size_t max_gaussians = 4000;  ///< of the scan that are used at a step, evenly chosen, >= 1
-  int max_iterations = 30;           ///< of each step from coarse to fine, >= 1
-  double kernel = 3.0;        ///< residuals of this many standard deviations count half as much as they would, > 0
-  double translation = 5e-4;  ///< a step is done when an iteration moves less than this [m] ...
-  double rotation = 5e-5;     ///< ... and turns less than this [rad]
-  double degenerate = 0.01;   ///< least over largest information of a direction below which a pose is degenerate
-  int threads = 0;            ///< 0 = all cores; does not change the result
+  std::size_t max_gaussians = 4000;  ///< maximum number of scan Gaussians per step, evenly chosen, >= 1
+  int max_iterations = 30;           ///< maximum per step from coarse to fine, >= 1
+  double kernel = 3.0;               ///< a residual of this many standard deviations has half of its usual cost, > 0
+  double translation = 5e-4;  ///< a step ends when an iteration moves less than this [m] and less than `rotation`
+  double rotation = 5e-5;     ///< a step ends when an iteration turns less than this [rad] and less than `translation`
+  double degenerate = 0.01;   ///< a pose is degenerate if smallest / largest information is at most this ratio
+  int threads = 0;            ///< 0 = all cores
 };
 
+/// The result of registerScan() and registerMap().
 struct GAUSSMAP_API RegistrationResult {
   Pose pose;  ///< scan frame to map frame
-  /// Of (x, y, z [m], rotation vector about the sensor [rad]), map axes; of the last iteration. Symmetric positive
-  /// definite, unless nothing of the map tells anything of the pose: then it is zero.
-  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
-  /// The direction that the scan tells least about, of unit length, rotation times range.
-  Eigen::Matrix<double, 6, 1> weakest = Eigen::Matrix<double, 6, 1>::Zero();
-  double fitness = 0.0;       ///< share of the scan's Gaussians within 3 standard deviations of one of the map
-  double mean_squared = 0.0;  ///< of these, the mean squared Mahalanobis distance
-  int iterations = 0;
-  bool converged = false;  ///< the last step ended before max_iterations
-  bool degenerate = true;  ///< the scan does not tell some direction (a corridor, a plain): see `weakest`
+  /// Covariance of (x, y, z [m], rotation vector about the sensor [rad]) along the map's axes, from the last iteration.
+  /// It is symmetric positive definite, or zero if the map gives no information about the pose.
+  PoseCovariance covariance = PoseCovariance::Zero();
+  /// The direction with the smallest information: a unit vector of (x, y, z, rotation vector times the RMS range of the
+  /// scan). Zero if the map gives no information about the pose.
+  PoseDirection least_observable = PoseDirection::Zero();
+  double fitness = 0.0;       ///< share of the scan's Gaussians within 3 standard deviations of a map Gaussian
+  double mean_squared = 0.0;  ///< mean squared Mahalanobis distance of these Gaussians
+  int iterations = 0;         ///< of all steps
+  bool converged = false;     ///< the last step ended before max_iterations
+  bool degenerate = true;     ///< some direction is unobservable (along a corridor, on a plain), see `least_observable`
 };
 
-/// Where a scan was taken: moves it onto a map, from the coarsest scale to the finest. At every scale each Gaussian of
-/// the scan looks for the nearest one of the map; the covariances are widened at first by a part of the cells. Damped
-/// Gauss-Newton over the squared Mahalanobis distances under a robust kernel (Geman, McClure). A Gaussian of the map
-/// says nothing about the directions in which it fills its cell, and one of the finest scale little about others than
-/// its thinnest.
+/// Registers a scan to a map: refines the guess of its pose, from the coarsest scale to the finest.
 ///
-/// `points` [m, scan frame]; NaN and infinite ones are left out. Throws std::invalid_argument, naming the option, or
-/// for an empty map or a guess with a fault.
+/// At every scale, each Gaussian of the scan is matched with the nearest Gaussian of the map. The covariances are
+/// widened by a fraction of the side of the cells, first by more, then by less. The pose minimises the squared
+/// Mahalanobis distances under a robust kernel (Geman-McClure), by damped Gauss-Newton iterations. A map Gaussian does
+/// not constrain the pose along directions in which it fills its cell. A map Gaussian of the finest scale constrains it
+/// mainly along its thinnest direction.
+///
+/// `points` are in the scan frame [m]; non-finite points are ignored. Throws std::invalid_argument if an option is out
+/// of range (the message names it), the map is empty, or the guess has a fault (see poseFault()).
 GAUSSMAP_API RegistrationResult registerScan(const std::vector<Eigen::Vector3d>& points, const GaussianMap<3>& map,
                                              const Pose& guess = {}, const RegistrationOptions& options = {});
 
-/// The same with the Gaussians of another map in place of a scan: distribution to distribution. The pose moves `source`
-/// onto `map`.
+/// Registers the map `source` to `map`, distribution to distribution. It works like registerScan(), with the Gaussians
+/// of `source` instead of those of a scan. The resulting pose transforms the frame of `source` into that of `map`.
 GAUSSMAP_API RegistrationResult registerMap(const GaussianMap<3>& source, const GaussianMap<3>& map,
                                             const Pose& guess = {}, const RegistrationOptions& options = {});
 

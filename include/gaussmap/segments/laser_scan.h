@@ -11,54 +11,62 @@
 
 namespace gaussmap {
 
-/// Pose of a planar sensor: p_map = R(heading) p_sensor + translation.
+/// The pose of a planar sensor: p_map = R(heading) p_sensor + translation.
 struct GAUSSMAP_API Pose2 {
   Vector<2> translation{0.0, 0.0};  ///< [m], map frame
   double heading = 0.0;             ///< [rad], counter-clockwise
-  /// Of (x, y, heading) in the map frame [m, m, rad]; zero: the pose is exact.
+  /// Covariance of (x, y, heading) in the map frame [m, m, rad]; zero: the pose is exact.
   Matrix<3> covariance = Matrix<3>::Zero();
 
+  /// Returns a point of the sensor frame in the map frame [m].
   Vector<2> operator*(const Vector<2>& point) const {
     const double c = std::cos(heading), s = std::sin(heading);
     return Vector<2>(c * point.x() - s * point.y(), s * point.x() + c * point.y()) + translation;
   }
 };
 
-/// One sweep of a planar laser in the order of its bearings, so that neighbours in the vectors are neighbouring beams.
+/// One sweep of a planar laser. The beams are in the order of their bearings, so adjacent entries are adjacent beams.
 struct LaserScan {
-  Pose2 pose;
+  Pose2 pose;                    ///< sensor frame to map frame
   std::vector<double> bearings;  ///< n [rad], sensor frame, ascending
-  std::vector<double> ranges;    ///< n [m]; not finite, <= 0 or >= max_range: no return
+  std::vector<double> ranges;    ///< n [m]; not finite, not positive or not below max_range: no return
   double max_range = 80.0;       ///< [m]
 
+  /// Returns true if a beam has a return.
   bool returned(std::size_t beam) const {
     return std::isfinite(ranges[beam]) && ranges[beam] > 0.0 && ranges[beam] < max_range;
   }
-  /// End of a beam that returned [m], map frame.
+  /// Returns the end of a beam that has a return [m, map frame].
   Vector<2> hit(std::size_t beam) const {
     return pose * Vector<2>(ranges[beam] * std::cos(bearings[beam]), ranges[beam] * std::sin(bearings[beam]));
   }
 };
 
-/// What of a cloud of points becomes the sweep of a planar laser.
+/// Options of planarScan(): which points of a cloud become the sweep of a planar laser.
 struct GAUSSMAP_API PlanarScanOptions {
-  bool slice = false;               ///< the cloud is three-dimensional: only points with z_min <= z <= z_max count
-  double z_min = 0.0, z_max = 0.0;  ///< heights in the map frame [m]
-  double step = 0.5;                ///< of a slice: degrees of bearing in which only the nearest point counts
-  double max_range = std::numeric_limits<double>::infinity();  ///< [m]
+  bool slice = false;  ///< for three-dimensional clouds: uses only points with z_min <= z <= z_max
+  /// Minimum height of a slice in the map frame [m].
+  double z_min = 0.0, z_max = 0.0;  ///< maximum height of a slice in the map frame [m], >= z_min
+  double step = 0.5;                ///< width of a beam of a slice [degrees], 0.01 to 180
+  double max_range = std::numeric_limits<double>::infinity();  ///< points farther from the sensor are no returns [m]
 };
 
-/// Turns a cloud into a sweep: the points are projected along z of the map frame, bearings are counted from the
-/// sensor's x axis. The pose is taken as exact. The points of a planar laser keep their order if their bearings ascend,
-/// or descend, all along (beyond pi too, by less than a full turn); NaN points are then beams without a return, their
-/// bearings between those of their neighbours. Otherwise the points are sorted. Where two beams lie more than one and a
-/// half usual steps apart, a beam without a return stands between them: the file left it out. A slice has one beam for
-/// each `step` of the full turn: the nearest point in it, or no return. Throws std::invalid_argument without a slice
-/// for points that lie in no plane (more than 0.5 m apart in height), and unless z_min <= z_max and 0.01 <= step <=
-/// 180.
+/// Converts a cloud to a sweep of a planar laser. The points are projected along z of the map frame. Bearings are
+/// counted from the x axis of the sensor. The pose is taken as exact.
+///
+/// - Without `slice`, the points keep their order if all bearings ascend or all descend (also beyond pi, by less than a
+///   full turn). NaN points are then beams without a return, with bearings between those of their neighbours. In any
+///   other case the points are sorted by bearing. Where two beams are more than 1.5 typical steps apart, a beam without
+///   a return is inserted, because the file left it out.
+/// - With `slice`, there is one beam per `step` of the full turn. It measures the nearest point in the step, or has no
+///   return.
+///
+/// Throws std::invalid_argument if an option is out of range. Without `slice`, it also throws if the heights of the
+/// points differ by more than 0.5 m.
 GAUSSMAP_API LaserScan planarScan(const Scan& cloud, const PlanarScanOptions& options = {});
 
-/// The same for all scans, in their order. Throws FileError, naming the scan, for a damaged file or points in no plane.
+/// Converts all scans to sweeps, in their order. Throws FileError if a file is damaged or planarScan() does not accept
+/// a scan; the message gives the scan. Throws std::invalid_argument if an option is out of range.
 GAUSSMAP_API std::vector<LaserScan> planarScans(const Scans& scans, const PlanarScanOptions& options = {});
 
 }  // namespace gaussmap

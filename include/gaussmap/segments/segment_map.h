@@ -9,39 +9,45 @@
 
 namespace gaussmap {
 
-/// A straight piece of wall as a planar laser sees it, map frame. It is oriented: seen from start towards end, the free
-/// space that it was observed from is on the left. The two faces of a thin wall are two segments.
-/// Leal, Scheding, Dissanayake 2000, sec. 3.
+/// A straight piece of wall, map frame. Leal, Scheding, Dissanayake 2000, sec. 3.
+///
+/// A segment is oriented: seen from start to end, the free space from which it was observed is on the left. The two
+/// faces of a thin wall are two segments.
 struct GAUSSMAP_API Segment {
-  Vector<2> start{0.0, 0.0};  ///< end points [m]
-  Vector<2> end{0.0, 0.0};
-  double normal_variance = 0.0;  ///< sigma_n^2, variance of the evidence across the line [m^2], eq. [2]
-  /// Of the line: (offset along the normal at the segment's middle [m], angle [rad]), symmetric positive definite.
+  Vector<2> start{0.0, 0.0};     ///< first end point [m]
+  Vector<2> end{0.0, 0.0};       ///< second end point [m]
+  double normal_variance = 0.0;  ///< sigma_n^2, variance of the evidence across the line [m^2], eq. (2)
+  /// Covariance of the line: (offset along the normal at the middle of the segment [m], angle [rad]), symmetric
+  /// positive definite.
   Matrix<2> covariance = Matrix<2>::Zero();
-  double weight = 0.0;         ///< observations that it represents
-  std::int64_t last_seen = 0;  ///< number of the last scan that saw it, 0 = the first scan
+  double weight = 0.0;         ///< number of observations that the segment represents
+  std::int64_t last_seen = 0;  ///< number of the last scan that observed the segment, 0 = the first scan
 
+  /// Returns the length [m].
   double length() const { return (end - start).norm(); }
-  /// Unit vector from start to end; (1, 0) if they coincide.
+  /// Returns the unit vector from start to end, or (1, 0) if they coincide.
   Vector<2> direction() const;
-  /// Unit normal on the left, towards free space.
+  /// Returns the unit normal on the left, towards free space.
   Vector<2> normal() const;
-  /// Distance of a point to the segment, end points included [m].
+  /// Returns the distance of a point from the segment, including its end points [m].
   double distance(const Vector<2>& point) const;
 };
 
-/// A 2-D map of line segments linked into chains. Each segment is in exactly one chain; the end of a segment is the
-/// start of the next one of its chain where their lines meet near both, else a short way from it.
+/// A 2-D map of line segments, linked into chains. Each segment is in exactly one chain.
+///
+/// If the lines of two linked segments meet near the end of the first and the start of the second, both end there.
+/// Otherwise there is a short distance between them.
 struct GAUSSMAP_API SegmentMap {
+  /// A sequence of linked segments.
   struct Chain {
-    std::size_t first = 0;  ///< segments [first, last) of the map, in the order of the chain
-    std::size_t last = 0;
-    bool closed = false;  ///< the last segment is linked to the first
+    std::size_t first = 0;  ///< first segment of the chain
+    std::size_t last = 0;   ///< one past the last segment; the segments are in the order of the chain
+    bool closed = false;    ///< true: the last segment is linked to the first
   };
   std::vector<Segment> segments;  ///< chain after chain
-  std::vector<Chain> chains;      ///< in order of their first segment
+  std::vector<Chain> chains;      ///< in the order of their first segment
 
-  /// Sum of the segments' lengths [m].
+  /// Returns the sum of the segments' lengths [m].
   double totalLength() const;
 };
 

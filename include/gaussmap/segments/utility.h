@@ -10,46 +10,51 @@
 
 namespace gaussmap {
 
-/// The goal functions o_1, o_2, ... of a segment's evidence that utilities are made of, Leal 2000 sec. 4.2 eq. [3].
+/// The goal functions o_1, o_2, ... of a segment's evidence, Leal 2000 sec. 4.2 eq. (3). Utilities are computed from
+/// them.
 struct SegmentGoals {
   double normal_variance = 0.0;  ///< o_1 = sigma_n^2 of the evidence across the line [m^2]
   double length = 0.0;           ///< o_2 [m]
-  double weight = 0.0;           ///< observations
-  double cells = 0.0;            ///< cells along the line with evidence
+  double weight = 0.0;           ///< number of observations
+  double cells = 0.0;            ///< number of cells along the line with evidence
   double misfit = 0.0;           ///< sum over these cells of their squared distance from the line [m^2]
-  Vector<2> start{0.0, 0.0};     ///< end points [m], map frame
-  Vector<2> end{0.0, 0.0};
+  Vector<2> start{0.0, 0.0};     ///< first end point [m], map frame
+  Vector<2> end{0.0, 0.0};       ///< second end point [m], map frame
 };
 
-/// Votes for what happens to a segment; the highest wins, Leal 2000 eq. [3]. Equal votes: nothing happens.
+/// Votes for a split, a merge or no change of a segment. The highest vote wins, Leal 2000 eq. (3). If the votes are
+/// equal, the segment does not change.
 class GAUSSMAP_API SegmentUtility {
  public:
   virtual ~SegmentUtility() = default;
-  /// U_split: for `whole` to become `first` and `second`, which are what its best break point leaves.
+  /// Returns U_split, the vote for splitting `whole` into `first` and `second` at its best break point.
   virtual double split(const SegmentGoals& whole, const SegmentGoals& first, const SegmentGoals& second) const = 0;
-  /// U_merge: for `first` and `second` to become `whole`.
+  /// Returns U_merge, the vote for merging `first` and `second` into `whole`.
   virtual double merge(const SegmentGoals& first, const SegmentGoals& second, const SegmentGoals& whole) const = 0;
-  /// U_nothing.
+  /// Returns U_nothing, the vote for no change.
   virtual double nothing(const SegmentGoals&) const { return 0.0; }
-  /// The observer is now here [m], map frame: told before every scan.
+  /// Receives the position of the observer [m, map frame] before every scan.
   virtual void observe(const Vector<2>&) {}
-  /// Whether a segment with these ends, without new evidence, is to be decided on again because the observer has moved.
+  /// Returns true if a segment with these end points needs a new decision because the observer has moved. The function
+  /// is called for segments without new evidence.
   virtual bool reconsider(const Vector<2>& start, const Vector<2>& end) const;
-  /// Whether SegmentFitter::map() may optimise all segments together (SegmentFitterOptions::optimise). Only where the
-  /// votes are by description length: it would undo what votes for other goals have decided.
+  /// Returns true if SegmentFitter::map() may optimise all segments together (see SegmentFitterOptions::optimise).
+  /// Return true only if the votes are description lengths: the optimisation would undo decisions for other goals.
   virtual bool optimisable() const { return false; }
 };
 
-/// Leal 2000 eq. [4]. Votes are 1 for yes and 0 for no, nothing always has 0.5.
+/// Options of ViewpointInvariantUtility, Leal 2000 eq. (4).
 struct ViewpointInvariantOptions {
-  double sigma_threshold = 0.06;  ///< sigma_th, greatest standard deviation across a segment [m], > 0
+  double sigma_threshold = 0.06;  ///< sigma_th, maximum standard deviation across a segment [m], > 0
   double min_length = 1.0;        ///< l_min, shorter segments are not split [m], > 0
-  double merge_ratio = 0.5;       ///< alpha, merge where the variance is at most alpha sigma_th^2, in [0, 1)
+  double merge_ratio = 0.5;       ///< alpha, merges if the variance is at most alpha sigma_th^2, in [0, 1)
 };
 
+/// The viewpoint-invariant utility of the paper, Leal 2000 eq. (4). A vote is 1 for yes and 0 for no. The vote for no
+/// change is always 0.5.
 class GAUSSMAP_API ViewpointInvariantUtility : public SegmentUtility {
  public:
-  /// Throws std::invalid_argument, naming the option.
+  /// Stores the options. Throws std::invalid_argument if an option is out of range; the message names the option.
   explicit ViewpointInvariantUtility(const ViewpointInvariantOptions& options = {});
   double split(const SegmentGoals& whole, const SegmentGoals& first, const SegmentGoals& second) const override;
   double merge(const SegmentGoals& first, const SegmentGoals& second, const SegmentGoals& whole) const override;
@@ -59,21 +64,25 @@ class GAUSSMAP_API ViewpointInvariantUtility : public SegmentUtility {
   ViewpointInvariantOptions options_;
 };
 
-/// Leal 2000 eq. [5]: as eq. [4], with a smaller l_min where a segment meets the field VF round the observer.
+/// Options of ViewpointDependentUtility, Leal 2000 eq. (5).
 struct ViewpointDependentOptions {
   ViewpointInvariantOptions far;  ///< outside the field
-  double radius = 5.0;            ///< of the field [m], > 0
-  double scale = 0.33;            ///< l_min within the field is scale times that outside, in (0, 1]
-  /// Where the observer stays [m], map frame. Without `fixed` it is the sensor of the last scan.
+  double radius = 5.0;            ///< radius of the field VF around the observer [m], > 0
+  double scale = 0.33;            ///< l_min inside the field is `scale` times l_min outside, in (0, 1]
+  /// Position of the observer [m], map frame, if `fixed`. Otherwise it is the position of the sensor in the last scan.
   Vector<2> viewpoint{0.0, 0.0};
-  bool fixed = false;
+  bool fixed = false;  ///< true: the observer stays at `viewpoint`
 };
 
-/// The paper's text says that the map reverts where the observer has left, its equation does not: here two segments
-/// outside the field that together are shorter than l_min, which only a visit can have split, are merged again.
+/// The viewpoint-dependent utility of the paper, Leal 2000 eq. (5). It is like eq. (4), with a smaller l_min for
+/// segments that meet the field around the observer.
+///
+/// According to the text of the paper, but not to its equation, the map reverts after the observer has left. This class
+/// implements the text: it merges two segments outside the field that together are shorter than l_min. Only a visit can
+/// have split them.
 class GAUSSMAP_API ViewpointDependentUtility : public SegmentUtility {
  public:
-  /// Throws std::invalid_argument, naming the option.
+  /// Stores the options. Throws std::invalid_argument if an option is out of range; the message names the option.
   explicit ViewpointDependentUtility(const ViewpointDependentOptions& options = {});
   double split(const SegmentGoals& whole, const SegmentGoals& first, const SegmentGoals& second) const override;
   double merge(const SegmentGoals& first, const SegmentGoals& second, const SegmentGoals& whole) const override;
@@ -90,17 +99,20 @@ class GAUSSMAP_API ViewpointDependentUtility : public SegmentUtility {
   Vector<2> viewpoint_, before_;
 };
 
-/// Votes are what the description gets shorter by [nat]: a segment costs `segment_cost`, a cell along it as much as its
-/// distance from the line is unlikely. A cell counts once however often it was seen: poses are wrong by the same
-/// few centimetres each time, and a wall is not split for having been looked at for long.
+/// Options of DescriptionLengthUtility.
 struct DescriptionLengthOptions {
-  double sigma = 0.03;        ///< of a cell's distance from the line: sensor, pose and wall together [m], > 0
-  double segment_cost = 3.0;  ///< kappa [nat], >= 0
+  double sigma = 0.03;        ///< standard deviation of a cell from the line: sensor, pose and wall together [m], > 0
+  double segment_cost = 3.0;  ///< kappa, cost of a segment [nat], >= 0
 };
 
+/// Votes with the decrease of the description length [nat].
+///
+/// A segment costs `segment_cost`. A cell along the segment costs the negative log-likelihood of its distance from the
+/// line. A cell counts once, also if it is seen often. Pose errors of a few centimetres repeat, and a wall must not be
+/// split only because it was observed for a long time.
 class GAUSSMAP_API DescriptionLengthUtility : public SegmentUtility {
  public:
-  /// Throws std::invalid_argument, naming the option.
+  /// Stores the options. Throws std::invalid_argument if an option is out of range; the message names the option.
   explicit DescriptionLengthUtility(const DescriptionLengthOptions& options = {});
   double split(const SegmentGoals& whole, const SegmentGoals& first, const SegmentGoals& second) const override;
   double merge(const SegmentGoals& first, const SegmentGoals& second, const SegmentGoals& whole) const override;
@@ -110,28 +122,33 @@ class GAUSSMAP_API DescriptionLengthUtility : public SegmentUtility {
   DescriptionLengthOptions options_;
 };
 
-/// A utility made of functions; those that are empty never win.
+/// A utility that consists of functions. The vote of an empty function never wins.
 struct GAUSSMAP_API UserUtility : public SegmentUtility {
+  /// A function that returns U_split.
   using Split = std::function<double(const SegmentGoals& whole, const SegmentGoals& first, const SegmentGoals& second)>;
+  /// A function that returns U_merge.
   using Merge = std::function<double(const SegmentGoals& first, const SegmentGoals& second, const SegmentGoals& whole)>;
+  /// A function that returns U_nothing.
   using Nothing = std::function<double(const SegmentGoals& segment)>;
-  Split split_vote;
-  Merge merge_vote;
-  Nothing nothing_vote;
+  Split split_vote;      ///< vote for a split
+  Merge merge_vote;      ///< vote for a merge
+  Nothing nothing_vote;  ///< vote for no change
 
   double split(const SegmentGoals& whole, const SegmentGoals& first, const SegmentGoals& second) const override;
   double merge(const SegmentGoals& first, const SegmentGoals& second, const SegmentGoals& whole) const override;
   double nothing(const SegmentGoals& segment) const override;
 };
 
-/// The weighted sum of other utilities' votes.
+/// A utility whose votes are the weighted sums of the votes of other utilities.
 class GAUSSMAP_API CombinedUtility : public SegmentUtility {
  public:
+  /// A utility and its weight.
   struct Part {
-    std::shared_ptr<SegmentUtility> utility;
-    double weight = 1.0;
+    std::shared_ptr<SegmentUtility> utility;  ///< not empty
+    double weight = 1.0;                      ///< finite
   };
-  /// Throws std::invalid_argument without parts, for an empty pointer or a weight that is not finite.
+  /// Makes a utility of parts. Throws std::invalid_argument if there are no parts, a pointer is empty, or a weight is
+  /// not finite.
   explicit CombinedUtility(std::vector<Part> parts);
   double split(const SegmentGoals& whole, const SegmentGoals& first, const SegmentGoals& second) const override;
   double merge(const SegmentGoals& first, const SegmentGoals& second, const SegmentGoals& whole) const override;

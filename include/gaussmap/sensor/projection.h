@@ -10,66 +10,85 @@
 
 namespace gaussmap {
 
-/// A lidar that turns about the z axis of its frame: rows of elevation, columns of azimuth all round. Planar lasers
-/// have one row.
+/// The projection of a spinning lidar that turns about the z axis of its frame. Rows are intervals of elevation,
+/// columns are intervals of azimuth over the full turn. A planar laser has one row.
 struct SphericalProjection {
   std::vector<double> row_borders;  ///< rows + 1 elevations above the xy plane [rad], ascending
-  int columns = 0;  ///< of the full turn, >= 1; column 0 begins behind the sensor (-x), counter-clockwise
+  int columns = 0;  ///< of the full turn, >= 1; counter-clockwise, column 0 begins behind the sensor (-x)
 };
 
-/// A depth camera, x to the right, y down, z forward: column = fx x / z + cx, row = fy y / z + cy.
+/// The projection of a depth camera, with x to the right, y down and z forward: column = fx x / z + cx,
+/// row = fy y / z + cy.
 struct PlanarProjection {
-  double fx = 0.0, fy = 0.0;  ///< focal lengths [pixel], > 0
-  double cx = 0.0, cy = 0.0;  ///< principal point [pixel]; the centre of the first pixel is (0, 0)
-  int columns = 0, rows = 0;  ///< >= 1
+  /// Horizontal focal length [pixel], > 0.
+  double fx = 0.0, fy = 0.0;  ///< vertical focal length [pixel], > 0
+  /// Column of the principal point [pixel]. The centre of the first pixel is (0, 0).
+  double cx = 0.0, cy = 0.0;  ///< row of the principal point [pixel]
+  /// Number of columns of the image, >= 1.
+  int columns = 0, rows = 0;  ///< number of rows of the image, >= 1
 };
 
+/// The projection of a lidar or of a depth camera.
 using Projection = std::variant<SphericalProjection, PlanarProjection>;
 
+/// A pixel of a range image.
 struct Pixel {
-  int row = 0;
-  int column = 0;
+  int row = 0;     ///< from 0
+  int column = 0;  ///< from 0
 };
 
+/// Returns the number of rows of a projection.
 GAUSSMAP_API int rowsOf(const Projection& projection);
+/// Returns the number of columns of a projection.
 GAUSSMAP_API int columnsOf(const Projection& projection);
-/// True if the last column is the first one's neighbour.
+/// Returns true if the last column is adjacent to the first one, as for a lidar.
 GAUSSMAP_API bool wraps(const Projection& projection);
 
-/// The pixel that a point [m, sensor frame] is seen in; nothing outside the field of view, or for a point that is no
-/// return.
+/// Returns the pixel that sees a point [m, sensor frame], or std::nullopt if the point is outside the field of view or
+/// not a return (see isReturn()).
 GAUSSMAP_API std::optional<Pixel> pixelOf(const Projection& projection, const Eigen::Vector3d& point);
 
-/// Unit vector through the middle of a pixel, sensor frame. The pixel's row lies in the image, its column anywhere.
+/// Returns the unit vector through the centre of a pixel, sensor frame. The row must lie in the image; the column can
+/// be any number.
 GAUSSMAP_API Eigen::Vector3d directionOf(const Projection& projection, Pixel pixel);
 
-/// Pixels that a ball may be seen in: whole rows and columns, both ends included. With `wraps`, columns may run below
-/// 0 or past the last one.
+/// A rectangle of pixels, including both ends. If the projection wraps(), columns can be below 0 or beyond the last
+/// one.
 struct PixelBox {
-  int first_row = 0, last_row = -1;
-  int first_column = 0, last_column = -1;
+  /// First row.
+  int first_row = 0, last_row = -1;  ///< last row
+  /// First column.
+  int first_column = 0, last_column = -1;  ///< last column
+  /// Returns true if the rectangle holds no pixel.
   bool empty() const { return last_row < first_row || last_column < first_column; }
 };
 
-/// A box of pixels that holds every pixel any point of the ball is seen in; empty if all of it is out of view.
-/// centre [m, sensor frame], radius [m] >= 0.
+/// Returns a rectangle that contains every pixel that can see a point of a ball. The rectangle is empty if the whole
+/// ball is out of view. The centre is in the sensor frame [m], radius >= 0 [m].
 GAUSSMAP_API PixelBox pixelsOf(const Projection& projection, const Eigen::Vector3d& centre, double radius);
 
-/// Throws std::invalid_argument, naming the value, if a projection is not usable, or has more than 2^28 pixels.
+/// Throws std::invalid_argument if a projection is not usable or has more than 2^28 pixels; the message gives the
+/// value.
 GAUSSMAP_API void checkProjection(const Projection& projection);
 
-/// Rows and columns of a spinning lidar from one of its scans [m, sensor frame; non-finite points and points at the
-/// sensor are left out]. Rows are the rings where elevations gather in rings, else as high as the usual distance
-/// between points one above the other. A column is two steps between neighbours of a ring wide, so that few pixels
-/// of a surface stay empty. A scan within one plane gets one row. Nothing if there are fewer than three points.
+/// Determines the rows and columns of a spinning lidar from one of its scans [m, sensor frame], or returns std::nullopt
+/// if there are fewer than three returns.
+///
+/// Points that are not returns (see isReturn()) are ignored. If the elevations form rings, each ring is a row.
+/// Otherwise the height of a row is the typical distance between points above each other. The width of a column is two
+/// steps between neighbours of a ring, which leaves few empty pixels on a surface. A scan within one plane gets one
+/// row.
 GAUSSMAP_API std::optional<SphericalProjection> findSphericalProjection(const std::vector<Eigen::Vector3d>& points);
 
-/// The camera that an organised cloud was seen with (row by row, `columns` points a row, NaN where there is no depth),
-/// by least squares; nothing if no camera explains the points to within a pixel.
+/// Determines the camera of an organised cloud by least squares, or returns std::nullopt if no camera explains the
+/// points to within one pixel.
+///
+/// The points [m, sensor frame] are row by row, `columns` points per row, NaN without depth.
 GAUSSMAP_API std::optional<PlanarProjection> findPlanarProjection(const std::vector<Eigen::Vector3d>& points,
                                                                   int columns);
 
-/// The camera of an organised cloud (columns > 0) if there is one, else the lidar.
+/// Returns findPlanarProjection() of an organised cloud (`columns` > 0) if there is a camera, otherwise
+/// findSphericalProjection().
 GAUSSMAP_API std::optional<Projection> findProjection(const std::vector<Eigen::Vector3d>& points, int columns = 0);
 
 }  // namespace gaussmap

@@ -11,43 +11,51 @@
 
 namespace gaussmap {
 
-/// What the beams of one pixel measured, ranges from the sensor [m]. Empty (no beam came back): nearest is infinite.
+/// The ranges that the beams of one pixel measured, from the sensor [m]. In an empty pixel, no beam returned and
+/// `nearest` is infinite.
 struct GAUSSMAP_API PixelRanges {
-  float nearest = std::numeric_limits<float>::infinity();
-  float farthest = 0.0f;
+  float nearest = std::numeric_limits<float>::infinity();  ///< smallest range [m]
+  float farthest = 0.0f;                                   ///< largest range [m]
+  /// Returns true if the pixel has no return.
   bool empty() const { return nearest > farthest; }
 };
 
-/// One scan as its sensor saw it: per pixel the smallest and the largest range. That a pixel is empty says nothing
-/// about the space in it (black, wet and far things give no return either).
+/// One scan as a range image: the smallest and the largest range per pixel. An empty pixel does not mean free space,
+/// because black, wet and distant surfaces also give no return.
 class GAUSSMAP_API RangeImage {
  public:
-  /// An image without any return. Throws std::invalid_argument if the projection is not usable.
+  /// Makes an image without returns. Throws std::invalid_argument if the projection is not usable.
   explicit RangeImage(Projection projection);
-  /// The image of a scan [m, sensor frame]. Points outside the field of view, or that are no returns, are left out.
+  /// Makes the image of a scan [m, sensor frame]. Points outside the field of view and points that are not returns are
+  /// ignored. Throws std::invalid_argument if the projection is not usable.
   RangeImage(Projection projection, const std::vector<Eigen::Vector3d>& points);
 
+  /// Returns the projection.
   const Projection& projection() const { return projection_; }
+  /// Returns the number of rows.
   int rows() const { return rows_; }
+  /// Returns the number of columns.
   int columns() const { return columns_; }
 
-  /// Enters one return.
+  /// Adds one point [m, sensor frame], if it is a return in the field of view.
   void add(const Eigen::Vector3d& point);
-  /// Takes every empty pixel for free space up to `range` [m] (for sensors that miss nothing up to there).
-  /// Throws std::invalid_argument unless it is positive and fits a float.
+  /// Treats every empty pixel as free space up to `range` [m], for sensors that see every object up to this range.
+  /// Throws std::invalid_argument unless the range is positive and finite as a float.
   void noReturnIsFree(double range);
 
-  /// row in [0, rows), column in [0, columns).
+  /// Returns the ranges of a pixel, with row in [0, rows) and column in [0, columns).
   const PixelRanges& at(int row, int column) const { return pixels_[index(row, column)]; }
-  /// For any row and column: outside of the image (columns wrap round if they do in the projection) all is empty.
+  /// Returns the ranges of a pixel with any row and column. Outside the image the pixel is empty. Columns wrap around
+  /// if the projection does (see wraps()).
   PixelRanges around(int row, int column) const;
-  /// The point at the nearest range in the middle of a pixel that is not empty [m, sensor frame]; row and column as for
-  /// around().
+  /// Returns the point at the nearest range in the centre of a pixel [m, sensor frame]. The pixel must not be empty.
+  /// Row and column are as for around().
   Eigen::Vector3d nearestPoint(int row, int column) const;
-  /// The largest range of all [m], 0 if there is none.
+  /// Returns the largest range in the image [m], or 0 if there is no return.
   float farthest() const { return farthest_; }
-  /// Points entered, and the pixels that hold them.
+  /// Returns the number of points added.
   std::size_t returns() const { return returns_; }
+  /// Returns the number of pixels with points.
   std::size_t filledPixels() const { return filled_; }
 
  private:

@@ -8,20 +8,22 @@
 
 #include "gaussmap/core/gaussian.h"
 
-// Colours that Gaussians are exported and shown in.
+// Colours of Gaussians, for the exports and the viewer.
 namespace gaussmap::detail {
 
 using Colour = std::array<std::uint8_t, 3>;  ///< red, green, blue
 
-/// Viridis (van der Walt & Smith 2015): equal differences look equal, dark at 0, bright at 1 and beyond.
+/// Returns a colour of the perceptually uniform scale Viridis (van der Walt & Smith 2015): dark for 0 and less, bright
+/// for 1 and more.
 Colour viridis(double place);
 
-/// What lies flat is sand, what faces along x blue, along y red; in between they mix by the squares of the normal's
-/// parts. The sign of the unit normal does not matter.
+/// Returns the colour of a surface with this normal: sand if it is horizontal, blue if it faces along x, red if it
+/// faces along y. Other normals mix the three colours by the squares of their components. The sign does not matter.
 Colour normalColour(const Vector<3>& normal);
 
-/// What the ends of a colour scale stand for: the 1 % and the 99 % quantile, so that a few far ones do not take the
-/// colours from all others; one apart if they are equal. Values that are not finite are left out; 0 and 1 if none is.
+/// Returns the values at the two ends of a colour scale: the 1 % and the 99 % quantile, so that a few outliers do not
+/// use up the colours. If both are equal, the ends are 0.5 below and above. Values that are not finite are ignored; the
+/// result is 0 and 1 if no value is finite.
 std::pair<double, double> colourRange(std::vector<double> values);
 
 }  // namespace gaussmap::detail

@@ -11,7 +11,7 @@
 namespace gaussmap::detail {
 namespace {
 
-/// A point of the file.
+/// One point of the file.
 struct DiffRow {
   std::array<float, 3> mean;
   std::array<float, 6> covariance;

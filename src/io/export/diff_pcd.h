@@ -8,9 +8,11 @@
 
 namespace gaussmap::detail {
 
-/// Writes a comparison of a scale of two maps as a PCD file: all Gaussians of the second map, and those of the first
-/// that are gone. Fields: x y z (floats, relative to the VIEWPOINT) covariance[6] weight p_value label (Change as a
-/// number). Throws FileError if it cannot be written.
+/// Writes the differences of two maps at one scale as a PCD file. It holds all Gaussians of the second map, and those
+/// of the first map that are gone.
+///
+/// Fields: x y z (floats, relative to the VIEWPOINT) covariance[6] weight p_value label (Change as a number). Throws
+/// FileError if the file cannot be written.
 void writeDiffPcd(const std::filesystem::path& path, const GaussianMap<3>& first, const GaussianMap<3>& second,
                   const MapDiff& diff, int scale);
 

@@ -22,19 +22,19 @@ using namespace detail;
 
 namespace {
 
-constexpr int kFacets = 8;                         // of an ellipsoid, round its equator
-constexpr int kRest = 45;                          // what splats have of spherical harmonics beyond the constant one
+constexpr int kFacets = 8;                         // facets of an ellipsoid around its equator
+constexpr int kRest = 45;                          // coefficients of a splat's higher spherical harmonics
 constexpr double kHarmonic = 0.28209479177387814;  // the constant one, 1 / (2 sqrt(pi))
-constexpr double kLeastDeviation = 1e-9;           // [m]; the logarithm of 0 would not be finite
+constexpr double kMinDeviation = 1e-9;             // [m]; the logarithm of 0 would not be finite
 
-/// A Gaussian as all three kinds of file need it.
+/// A Gaussian and its values that all three kinds of file need.
 struct Item {
-  Gaussian<3> gaussian;  // mean about the origin
+  Gaussian<3> gaussian;  // mean relative to the origin
   EllipsoidPose pose;
   float log_odds;
 };
 
-/// Gaussians one after the other, never all at once.
+/// Computes the Gaussians to export one by one, so that they need not all be in memory.
 class Items {
  public:
   Items(const GaussianMap<3>& map, const GaussianPlyOptions& options)
@@ -125,7 +125,7 @@ void writeSplats(WriteBuffer& buffer, const Items& items) {
       buffer.add(static_cast<float>((channel / 255.0 - 0.5) / kHarmonic));
     for (int rest = 0; rest < kRest; ++rest) buffer.add(0.0f);
     buffer.add(item.log_odds);
-    add(buffer, item.pose.deviations.cwiseMax(kLeastDeviation).array().log().matrix());
+    add(buffer, item.pose.deviations.cwiseMax(kMinDeviation).array().log().matrix());
     for (const double part :
          {item.pose.rotation.w(), item.pose.rotation.x(), item.pose.rotation.y(), item.pose.rotation.z()})
       buffer.add(static_cast<float>(part));

@@ -28,11 +28,11 @@ std::size_t bytesOf(Type type) {
 
 /// One array of the file.
 struct Array {
-  const char* section;  // element of the XML part that it belongs to
+  const char* section;  // XML element that contains the array
   const char* name;
   Type type;
   std::size_t components;
-  std::function<void(std::size_t row)> write;  // adds the numbers of one row
+  std::function<void(std::size_t row)> write;  // writes the numbers of one row
 
   std::uint64_t bytes(std::size_t rows) const { return rows * components * bytesOf(type); }
 };
@@ -74,7 +74,7 @@ Matrix<3> rootOf(const EllipsoidPose& pose) {
   return turn * pose.deviations.asDiagonal() * turn.transpose();
 }
 
-/// The row of each Gaussian's parent, -1 where the file has none.
+/// Returns the row of each Gaussian's parent, or -1 if the parent is not in the file.
 std::vector<std::int64_t> parentRows(const GaussianMap<3>& map, const std::vector<GaussianId>& rows, bool all_scales) {
   std::vector<std::int64_t> parents(rows.size(), -1);
   if (!all_scales) return parents;

@@ -37,7 +37,7 @@ std::string exactText(double value) {
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
-/// The records by lower corner of their square, means in the map frame.
+/// Groups the records by the square that contains them, given by its lower corner. The means become map coordinates.
 std::map<Corner, GaussianRecords> bySquare(const GaussianRecords& all, int size) {
   std::map<Corner, GaussianRecords> squares;
   for (GaussianRecord record : all.records) {
@@ -56,7 +56,7 @@ std::map<Corner, GaussianRecords> bySquare(const GaussianRecords& all, int size)
   return squares;
 }
 
-/// A directory that is renamed when it is complete, and removed if it never is.
+/// A directory that is written under a temporary name. commit() gives it its final name; otherwise it is removed.
 class PartFolder {
  public:
   explicit PartFolder(const fs::path& target) : target_(target), part_(target) {
@@ -87,14 +87,14 @@ class PartFolder {
   bool done_ = false;
 };
 
-/// What the index says.
+/// The content of the index file.
 struct Index {
   double x_size = 0.0, y_size = 0.0;
   std::vector<std::string> files;
   std::optional<MapOptions> options;
 };
 
-/// "key: rest" of a line; false for blank lines and comments.
+/// Splits a line "key: rest". Returns false for blank lines and comments.
 bool splitLine(const std::string& line, std::string& key, std::string& rest) {
   const std::size_t first = line.find_first_not_of(" \t\r");
   if (first == std::string::npos || line[first] == '#') return false;
@@ -146,7 +146,7 @@ Index readIndex(const fs::path& path) {
   return index;
 }
 
-/// One scale with one Gaussian a cell.
+/// Returns true if the tiles hold only scale 0, with one Gaussian per cell and without occupancy.
 bool isPlainFinest(const GaussianMap<3>& map, const GaussianRecords& all) {
   return map.scales() == 1 && map.gaussianCount(0) == map.cellCount(0) && all.records.front().scale == 0.0f &&
          !map.hasOccupancy();

@@ -15,8 +15,8 @@ inline bool isFinite(const Segment& segment) {
          std::isfinite(segment.normal_variance) && std::isfinite(segment.weight);
 }
 
-/// Throws std::invalid_argument, naming the segment or the chain, unless all numbers are finite and each segment is in
-/// exactly one chain.
+/// Checks that all numbers are finite and that each segment is in exactly one chain. Throws std::invalid_argument with
+/// the number of the segment or chain.
 inline void checkSegments(const SegmentMap& map) {
   for (std::size_t i = 0; i < map.segments.size(); ++i)
     if (!isFinite(map.segments[i])) throw std::invalid_argument("segment " + std::to_string(i) + " is not finite");

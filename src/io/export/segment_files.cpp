@@ -17,7 +17,7 @@ using namespace detail;
 
 namespace {
 
-/// One end of a segment.
+/// One point of the file: one end of a segment.
 struct Record {
   std::array<float, 3> xyz, normal;
   std::array<double, 2> position;
@@ -29,7 +29,7 @@ struct Record {
   std::uint8_t closed;
 };
 
-/// Every field of a record, for writing and for reading.
+/// Returns every field of a record. It is used for writing and for reading.
 std::vector<PcdOutput> fieldsOf(const Record& r) {
   constexpr std::size_t kStride = sizeof(Record);
   return {pcdOutput("x", &r.xyz[0], 1, kStride),

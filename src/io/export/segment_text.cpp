@@ -11,7 +11,7 @@ using namespace detail;
 
 namespace {
 
-/// With the digits that give back the same number.
+/// Returns the shortest text that reads back as the same number.
 template <typename Number>
 std::string text(Number value) {
   char digits[32];
@@ -42,7 +42,7 @@ std::string csvLine(const Segment& segment, std::size_t chain, bool closed) {
   return line + "," + text(segment.last_seen) + "\n";
 }
 
-/// Calls use(segment, number of its chain, whether that is closed) for all segments.
+/// Calls use(segment, number of its chain, whether the chain is closed) for every segment.
 template <typename Use>
 void forEachSegment(const SegmentMap& map, const Use& use) {
   for (std::size_t c = 0; c < map.chains.size(); ++c)

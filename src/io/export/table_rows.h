@@ -10,7 +10,8 @@
 
 namespace gaussmap::detail {
 
-/// The Gaussians of all scales, coarsest first, or of one. Throws std::out_of_range for a scale that there is not.
+/// Returns the Gaussians of one scale, or of all scales from the coarsest to the finest if `scale` is std::nullopt.
+/// Throws std::out_of_range if the map does not have the scale.
 inline std::vector<GaussianId> tableRows(const GaussianMap<3>& map, std::optional<int> scale) {
   if (scale) return gaussiansOfScale(map, *scale);
   std::vector<GaussianId> rows;

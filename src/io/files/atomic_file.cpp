@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;  // write() takes no more than 2 GB
+constexpr std::size_t kMaxAtOnce = std::size_t{1} << 30;  // write() takes no more than 2 GB
 
 fs::path resolved(const fs::path& target) {
   std::error_code error;
@@ -39,7 +39,7 @@ AtomicFile::AtomicFile(const fs::path& target) : target_(resolved(target)), part
   if (fs::exists(status) && !fs::is_regular_file(status)) throw FileError(target, "exists and is not a file");
   while (!openLocked()) {
   }
-  // From here on the destructor does not run if something throws.
+  // The destructor does not run if the constructor throws, so the file is closed here.
   if (::ftruncate(file_, 0) != 0) {
     const int reason = errno;
     closeFile();
@@ -47,8 +47,8 @@ AtomicFile::AtomicFile(const fs::path& target) : target_(resolved(target)), part
   }
 }
 
-/// False if the part file changed hands between opening and locking: it must be opened again, because what was
-/// locked is by now the finished target of another writer, or nothing.
+/// Returns false if another writer renamed or removed the part file between the opening and the locking. The part file
+/// must then be opened again: the locked file is the finished target of the other writer, or has no name.
 bool AtomicFile::openLocked() {
   file_ = ::open(part_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
   if (file_ < 0) fail("cannot be opened for writing", errno);
@@ -68,7 +68,7 @@ bool AtomicFile::openLocked() {
 
 AtomicFile::~AtomicFile() {
   if (file_ < 0) return;
-  if (hasName(file_, part_.c_str())) ::unlink(part_.c_str());  // while still locked: nobody else's file can be hit
+  if (hasName(file_, part_.c_str())) ::unlink(part_.c_str());  // still locked, so it is not the file of another writer
   closeFile();
 }
 
@@ -76,7 +76,7 @@ void AtomicFile::write(const void* data, std::size_t bytes) {
   if (file_ < 0) throw FileError(target_, "is finished and takes no more bytes");
   const char* next = static_cast<const char*>(data);
   while (bytes > 0) {
-    const ssize_t written = ::write(file_, next, std::min(bytes, kMostAtOnce));
+    const ssize_t written = ::write(file_, next, std::min(bytes, kMaxAtOnce));
     if (written < 0) {
       if (errno == EINTR) continue;
       fail("cannot be written", errno);
@@ -96,10 +96,10 @@ void AtomicFile::commit() {
 
   const fs::path folder = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
   const int directory = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (directory < 0) return;  // a folder may be writable but not readable: the rename then waits for the next sync
+  if (directory < 0) return;  // a folder can be writable but not readable; the system syncs it later
   const int reason = ::fsync(directory) == 0 ? 0 : errno;
   ::close(directory);
-  // Some file systems cannot sync a folder and say EINVAL: nothing more can be done there.
+  // Some file systems cannot sync a folder and return EINVAL. Nothing more can be done then.
   if (reason != 0 && reason != EINVAL)
     throw FileError(target_, "is complete, but its folder cannot be brought to the disk: " +
                                  std::generic_category().message(reason));

@@ -10,30 +10,33 @@ namespace gaussmap::detail {
 
 struct OpenFile;
 
-/// A file that appears whole or not at all. It is written as `<target>.part` beside the target, then renamed over
-/// it: readers see the old file or the new one, whatever happens in between. One writer at a time: the part file is
-/// locked. A part file left by a process that died is not locked, and is taken over; handleSignals() removes it.
+/// Writes a file atomically. The content goes to `<target>.part` beside the target, which is then renamed to the
+/// target: readers see either the old or the new file, also after a crash.
+///
+/// There is one writer at a time, because the part file is locked. The part file of a process that died is not locked,
+/// and the next writer reuses it. After handleSignals(), a signal that ends the process also removes it.
 class AtomicFile {
  public:
-  /// Opens the part file, empty. A target that is a symbolic link is followed, the link stays.
-  /// Throws FileError if the target is no file or a link to nowhere, if the folder cannot be written, or if somebody
-  /// else is writing the same target at this moment.
+  /// Opens the part file and empties it. If the target is a symbolic link, the file that it points to is replaced and
+  /// the link stays. Throws FileError if the target is not a regular file or is a broken link, if the folder cannot be
+  /// written, or if another writer is writing the same target.
   explicit AtomicFile(const std::filesystem::path& target);
-  /// Without commit() the part file is removed, the target untouched.
+  /// Removes the part file if there was no commit(). The target is then unchanged.
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   const std::filesystem::path& target() const { return target_; }
-  /// For a library that writes files itself (SQLite): let it fill this file, close it, then call commit().
-  /// It must write into the file, not replace it by another.
+  /// Returns the path for a library that writes files itself (SQLite). The library fills this file and closes it; then
+  /// call commit(). It must write into the file, and must not replace it by another one.
   const std::filesystem::path& partPath() const { return part_; }
 
-  /// Appends bytes, unbuffered: hand over large pieces. Throws FileError if they do not all arrive (disk full).
+  /// Appends bytes without buffering, so pass large pieces. Throws FileError if they cannot all be written (disk full).
   void write(const void* data, std::size_t bytes);
 
-  /// Makes the part file the target: data to the disk, rename, folder to the disk. Throws FileError if a step fails;
-  /// the target is then the old one, unless only the last step failed. Nothing can be written afterwards.
+  /// Makes the part file the target: syncs the data to the disk, renames the file, and syncs the folder. Afterwards
+  /// nothing can be written. Throws FileError if a step fails. The target is then the old file, unless only the
+  /// last step failed.
   void commit();
 
  private:
@@ -44,7 +47,7 @@ class AtomicFile {
   std::filesystem::path target_;
   std::filesystem::path part_;
   int file_ = -1;              // -1: committed
-  OpenFile* entry_ = nullptr;  // what a signal handler sees, see handleSignals()
+  OpenFile* entry_ = nullptr;  // entry for the signal handler, see handleSignals()
 };
 
 }  // namespace gaussmap::detail

@@ -26,7 +26,7 @@ void requireRegular(const std::filesystem::path& path, const struct stat& status
 
 class Descriptor {
  public:
-  // Non-blocking, because a file may have become a pipe since it was looked at.
+  // Non-blocking, because the file can have become a pipe since the check.
   explicit Descriptor(const std::filesystem::path& path)
       : number_(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
     if (number_ < 0) throwSystemError(path, "cannot be opened");
@@ -43,7 +43,7 @@ class Descriptor {
 }  // namespace
 
 MappedFile::MappedFile(const std::filesystem::path& path) : path_(path) {
-  // Looked at before it is opened: opening alone may wake the other end of a pipe or move a device.
+  // The file is checked before it is opened: opening alone can wake the other end of a pipe or start a device.
   struct stat status;
   if (stat(path.c_str(), &status) != 0) throwSystemError(path, "cannot be opened");
   requireRegular(path, status);
@@ -67,8 +67,8 @@ MappedFile::~MappedFile() {
 }
 
 void MappedFile::requireWhole() const {
-  // By its name, not by a descriptor kept open: there may be thousands of these. Another file of that name does no
-  // harm.
+  // The check uses the name and not an open descriptor, because thousands of files can be mapped. A new file with this
+  // name is no problem: the mapped file is still complete.
   struct stat status;
   if (stat(path_.c_str(), &status) != 0 || status.st_dev != device_ || status.st_ino != inode_) return;
   if (static_cast<std::size_t>(status.st_size) < bytes_.size())

@@ -25,7 +25,7 @@ OpenFile* OpenFiles::freeEntry() {
 
 OpenFile* OpenFiles::add(const std::filesystem::path& path, int file, std::string_view mapped) {
   OpenFile* const entry = freeEntry();
-  std::strncpy(entry->path, path.c_str(), sizeof entry->path - 1);  // what could be opened is no longer than that
+  std::strncpy(entry->path, path.c_str(), sizeof entry->path - 1);  // the path of an open file is not longer
   entry->file = file;
   entry->process = ::getpid();
   entry->begin = mapped.data();

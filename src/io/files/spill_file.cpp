@@ -15,7 +15,7 @@ namespace gaussmap::detail {
 SpillFile::SpillFile(const std::filesystem::path& folder) : folder_(folder) {
   file_ = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (file_ >= 0) return;
-  std::string name = (folder / ".gaussmap-XXXXXX").string();  // not every file system knows files without names
+  std::string name = (folder / ".gaussmap-XXXXXX").string();  // for file systems without O_TMPFILE
   file_ = ::mkostemp(name.data(), O_CLOEXEC);
   if (file_ < 0) fail("no temporary file can be made there", errno);
   ::unlink(name.c_str());

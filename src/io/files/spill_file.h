@@ -10,24 +10,24 @@
 
 namespace gaussmap::detail {
 
-/// Bytes that wait on the disk: a file without a name, which is gone with the process, however that ends.
+/// An anonymous temporary file. The system removes it when the process ends, also after a crash.
 class SpillFile {
  public:
-  /// Where some bytes stand.
+  /// Position of some bytes in the file.
   struct Span {
     std::uint64_t begin = 0;
     std::uint64_t size = 0;
   };
 
-  /// In this folder. Throws FileError if no file can be made there.
+  /// Creates the file in this folder. Throws FileError if this fails.
   explicit SpillFile(const std::filesystem::path& folder);
   ~SpillFile();
   SpillFile(const SpillFile&) = delete;
   SpillFile& operator=(const SpillFile&) = delete;
 
-  /// Throws FileError if the disk is full.
+  /// Appends bytes and returns their position. Throws FileError if they cannot be written (disk full).
   Span append(const std::string& bytes);
-  /// From any thread.
+  /// Returns bytes of the file. Can be called from any thread. Throws FileError if they cannot be read.
   std::string read(const Span& span) const;
 
  private:
@@ -38,7 +38,7 @@ class SpillFile {
   std::uint64_t end_ = 0;
 };
 
-/// Appends an array of plain values to bytes that takeArray() reads again in the same program.
+/// Appends an array of trivially copyable values to `bytes`. takeArray() reads it again in the same program.
 template <typename Value>
 void putArray(std::string& bytes, const std::vector<Value>& values) {
   const std::uint64_t count = values.size();
@@ -46,7 +46,7 @@ void putArray(std::string& bytes, const std::vector<Value>& values) {
   bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value));
 }
 
-/// Appends the array at `place` to the values, and moves behind it.
+/// Reads an array at `place`, appends it to `values`, and moves `place` behind it.
 template <typename Value>
 void takeArray(const std::string& bytes, std::size_t& place, std::vector<Value>& values) {
   std::uint64_t count = 0;

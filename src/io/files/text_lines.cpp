@@ -23,10 +23,10 @@ bool startsWith(std::string_view text, std::string_view start) {
 
 }  // namespace
 
-/// Gives bytes until there are no more.
+/// Source of the bytes of a text.
 struct TextLines::Source {
   virtual ~Source() = default;
-  /// Replaces `piece` by the next bytes; empty at the end. Says in `damage` why that came too early.
+  /// Replaces `piece` by the next bytes, which are empty at the end. Sets `damage` if the end comes too early.
   virtual void read(std::string& piece, std::string& damage) = 0;
 };
 
@@ -59,7 +59,7 @@ struct TextLines::GzipSource : Source {
     piece.resize(filled);
   }
 
-  /// Bytes expanded into `piece`, also those just before the damage.
+  /// Expands bytes into `piece` and returns their number. Bytes before damaged data are included.
   std::size_t expand(std::string& piece, std::string& damage) {
     const std::size_t given = std::min(rest.size(), kPiece);
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(rest.data()));  // zlib does not write there
@@ -70,7 +70,7 @@ struct TextLines::GzipSource : Source {
     rest.remove_prefix(given - stream.avail_in);
     const std::size_t filled = piece.size() - stream.avail_out;
     if (state == Z_STREAM_END) {
-      ended = !startsWith(rest, kGzipMagic);  // files may be joined
+      ended = !startsWith(rest, kGzipMagic);  // several gzip files may be joined
       if (!ended) inflateReset(&stream);
       if (ended && rest.find_first_not_of('\0') != std::string_view::npos)
         damage = "there are " + std::to_string(rest.size()) + " bytes behind the gzip data";
@@ -110,7 +110,7 @@ bool TextLines::next(std::string& line) {
     if (read_ == buffer_.size()) {
       read_ = 0;
       source_->read(buffer_, damage_);
-      if (buffer_.empty()) return begun && damage_.empty();  // what the damage cut in two is no line
+      if (buffer_.empty()) return begun && damage_.empty();  // a line cut off by the damage is dropped
     }
     begun = true;
     const std::string_view rest = std::string_view(buffer_).substr(read_);

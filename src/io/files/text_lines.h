@@ -8,22 +8,22 @@
 
 namespace gaussmap::detail {
 
-/// The lines of a text file one after the other, plain or gzip (told by its first bytes, not by its name). Expands
-/// as it goes: a small file that expands to a huge one costs time, not memory.
+/// Reads a text file line by line, plain or gzip (detected by the first bytes, not by the name). The text is expanded
+/// piece by piece, so a small file that expands to a huge one costs time, but no memory.
 class TextLines {
  public:
-  /// Throws FileError if there is no such file, or it is a directory, a pipe, a device, or may not be read.
+  /// Opens a file. Throws FileError if it does not exist, is a directory, a pipe or a device, or cannot be read.
   explicit TextLines(const std::filesystem::path& path);
   ~TextLines();
   TextLines(const TextLines&) = delete;
   TextLines& operator=(const TextLines&) = delete;
 
-  /// The next line without its end; false behind the last one. Lines are cut at 16 MB. The end of a damaged gzip file
-  /// is behind the last whole line before the damage.
+  /// Reads the next line without its line end. Returns false after the last line. Lines are cut at 16 MiB. A damaged
+  /// gzip file ends after the last whole line before the damage.
   bool next(std::string& line);
-  /// Of the line that next() gave, from 1; after the last one, of the one that would follow.
+  /// Number of the line that next() has read, from 1. After the end, it is the number that the next line would have.
   std::size_t number() const { return number_; }
-  /// Why the text ends before its end, once next() said so; empty if nothing is wrong.
+  /// Why the text ended too early, after next() has returned false; empty if nothing is wrong.
   const std::string& damage() const { return damage_; }
 
  private:
@@ -32,7 +32,7 @@ class TextLines {
   struct GzipSource;
   std::unique_ptr<Source> source_;
   std::string buffer_;
-  std::size_t read_ = 0;  // bytes of the buffer that were given
+  std::size_t read_ = 0;  // bytes of the buffer that next() has used
   std::size_t number_ = 0;
   std::string damage_;
 };

@@ -11,7 +11,7 @@ static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "values are written as 
 
 namespace gaussmap::detail {
 
-/// Collects values for a file and hands them over in large pieces; flush() after the last one.
+/// Collects values for a file and writes them in large pieces. Call flush() after the last value.
 class WriteBuffer {
  public:
   explicit WriteBuffer(AtomicFile& file) : file_(file) {}

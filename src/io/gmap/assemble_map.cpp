@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "map/link_cells.h"
+#include "map/child_links.h"
 #include "map/map_scale_builder.h"
 
 namespace gaussmap::detail {
@@ -17,7 +17,7 @@ struct OrderedScale {
   std::vector<std::uint32_t> labels;
 };
 
-/// Puts the cells of a scale into key order.
+/// Sorts the cells of a scale into key order.
 template <int D>
 OrderedScale<D> inKeyOrder(const Tile<D>& tile, const MapOptions& options, int s) {
   std::vector<std::size_t> first(tile.keys.size() + 1, 0);
@@ -43,11 +43,11 @@ OrderedScale<D> inKeyOrder(const Tile<D>& tile, const MapOptions& options, int s
   return {scale.take(), std::move(labels)};
 }
 
-/// Finds the children of every cell and turns labels into parents.
+/// Finds the children of every cell and computes the parents of the Gaussians from their labels.
 template <int D>
 void link(MapScale<D>& finer, const std::vector<std::uint32_t>& labels, MapScale<D>& coarse, const Grid<D>& grid,
           int s) {
-  coarse.first_child = linkCells<D>(finer.keys, coarse.keys, grid, s);
+  coarse.first_child = childLinks<D>(finer.keys, coarse.keys, grid, s);
   const auto startOf = [](const std::vector<std::uint32_t>& first_gaussian, std::size_t cell) {
     return first_gaussian.empty() ? cell : std::size_t{first_gaussian[cell]};
   };
@@ -79,7 +79,7 @@ GaussianMap<D> assembleMap(const MapOptions& options, std::vector<Tile<D>> tiles
   std::vector<MapScale<D>> scales(tiles.size());
   for (std::size_t s = tiles.size(); s-- > 0;) {
     OrderedScale<D> ordered = inKeyOrder<D>(tiles[s], options, static_cast<int>(s));
-    tiles[s] = {};  // of large maps the memory is not there twice
+    tiles[s] = {};  // frees memory: large maps do not fit twice
     scales[s] = std::move(ordered.scale);
     if (s + 1 < tiles.size()) link<D>(scales[s], ordered.labels, scales[s + 1], grid, static_cast<int>(s) + 1);
   }

@@ -9,11 +9,11 @@
 
 namespace gaussmap::detail {
 
-/// Appends the cells of a tile to others of the same scale.
+/// Appends the cells of a tile to other cells of the same scale.
 template <int D>
 void appendTile(Tile<D>& all, const Tile<D>& tile);
 
-/// The cells of a tile that keep(key) wants, behind those of `out`.
+/// Appends to `out` the cells of a tile for which keep(key) is true.
 template <int D, typename Keep>
 void appendCells(Tile<D>& out, const Tile<D>& tile, const Keep& keep) {
   std::size_t first = 0;
@@ -27,7 +27,7 @@ void appendCells(Tile<D>& out, const Tile<D>& tile, const Keep& keep) {
       };
       out.keys.push_back(tile.keys[cell]);
       out.counts.push_back(tile.counts[cell]);
-      append(out.moments, tile.moments);  // one a cell, as then are Gaussians
+      append(out.moments, tile.moments);  // a tile with moments has one Gaussian per cell
       append(out.gaussians, tile.gaussians);
       append(out.labels, tile.labels);
       append(out.log_odds, tile.log_odds);
@@ -36,8 +36,9 @@ void appendCells(Tile<D>& out, const Tile<D>& tile, const Keep& keep) {
   }
 }
 
-/// The map made of these cells, one list a scale, finest first, each in any order: puts them into key order, finds
-/// children and turns labels into parents. Throws std::invalid_argument, saying what, if they do not fit together.
+/// Builds a map from cells: one list per scale, finest first, in any order. It sorts the cells into key order, finds
+/// the children, and computes the parents from the labels. Throws std::invalid_argument with the reason if the cells do
+/// not fit together.
 template <int D>
 GaussianMap<D> assembleMap(const MapOptions& options, std::vector<Tile<D>> scales);
 

@@ -17,11 +17,11 @@
 #include "core/check.h"
 #include "core/parallel.h"
 #include "io/files/atomic_file.h"
-#include "io/gmap/gain_threshold.h"
+#include "io/gmap/largest_gains.h"
 #include "io/gmap/map_schema.h"
 #include "io/gmap/spilled_cells.h"
-#include "map/areas.h"
 #include "map/coarsen.h"
+#include "map/occupied_areas.h"
 #include "mapping/budget.h"
 #include "mapping/scale_clusters.h"
 
@@ -30,31 +30,31 @@ using namespace detail;
 
 namespace {
 
-constexpr double kShareOfSums = 0.6;      // of the memory, while points are counted
-constexpr std::size_t kBatchesHeld = 24;  // as many times its bytes does a batch need while it is worked on
+constexpr double kShareOfSums = 0.6;      // share of the memory for the moments while scans are read
+constexpr std::size_t kBatchesHeld = 24;  // memory of a batch during its processing, in multiples of its bytes
 
-/// Gives memory that was freed back to the system: what one thread freed is else not there for another.
+/// Returns freed memory to the system. Otherwise other threads cannot use the memory that one thread has freed.
 void giveBackMemory() {
 #ifdef __GLIBC__
   ::malloc_trim(0);
 #endif
 }
 
-/// The dendrograms of one batch, on the disk.
+/// The dendrograms of one batch, on disk.
 struct SpilledCuts {
-  SpillFile::Span keys;   // of the coarse cells
-  SpillFile::Span sizes;  // merges of each
+  SpillFile::Span keys;   // keys of the coarse cells
+  SpillFile::Span sizes;  // number of merges of each cell
   SpillFile::Span merges;
   SpillFile::Span gains;
 };
 
-/// A finished tile, on the disk.
+/// A complete tile, on the disk.
 struct SpilledTile {
   TileRow<3> row;  // without its bytes
   SpillFile::Span bytes;
 };
 
-/// How many parts the cells of a scale are cut into.
+/// Computes how many clusters each cell of a scale gets.
 class ScaleBudget {
  public:
   ScaleBudget(const SpillFile& file, const std::vector<SpilledCuts>& cuts, const MapOptions& options, int scale,
@@ -82,7 +82,7 @@ class ScaleBudget {
   }
 
  private:
-  /// Of gains that are equal those of the first cells are taken, as partsPerCell() does it.
+  /// Of equal gains, those of the first cells in key order are taken, as in partsPerCell().
   void shareTies(const SpillFile& file, const std::vector<SpilledCuts>& cuts, const MapOptions& options, int scale) {
     std::vector<CellKey<3>> keys;
     std::vector<std::size_t> counts;
@@ -166,7 +166,8 @@ class Builder {
     return per_cell == nullptr || per_cell->gaussians != 1.0;
   }
 
-  /// Makes the scale above and keeps the tiles of this one, which then know their parents.
+  /// Builds the next coarser scale. Then stores the tiles of scale s, because the parents of their Gaussians
+  /// are now known.
   void finishScale(int s, SpilledCells& coarser) {
     const auto batches = cells_->batches(batch_bytes_);
     std::vector<SpilledCuts> cuts;
@@ -230,11 +231,12 @@ class Builder {
     setClusters(ScalePair<3>{batch.cells, coarse, grid_, s}, clusters.cut(parts), threads());
   }
 
-  /// The tiles of a batch, compressed; `coarse` = the cells above, nullptr at the coarsest scale.
+  /// Compresses the tiles of a batch and stores them on disk. `coarse` holds the parent cells; nullptr at
+  /// the coarsest scale.
   void keepTiles(const CellBatch& batch, const MapScale<3>* coarse, int s) {
     const auto at = static_cast<std::size_t>(s);
     std::vector<TileRow<3>> rows(batch.tiles.size());
-    std::vector<std::uint32_t> first_of_parent;  // per cell, the first Gaussian of the cell above
+    std::vector<std::uint32_t> first_of_parent;  // per cell: index of the first Gaussian in its parent cell
     for (std::size_t cell = 0; coarse && cell < coarse->keys.size(); ++cell)
       first_of_parent.insert(first_of_parent.end(), coarse->first_child[cell + 1] - coarse->first_child[cell],
                              static_cast<std::uint32_t>(gaussiansOf(*coarse, cell).first));
@@ -265,7 +267,7 @@ class Builder {
   const std::int32_t span_;
   const std::size_t batch_bytes_;
   SpillFile spill_;
-  std::unique_ptr<SpilledCells> cells_;  // of the scale that is in work
+  std::unique_ptr<SpilledCells> cells_;  // cells of the current scale
   std::vector<std::size_t> cell_counts_, gaussian_counts_;
   std::vector<std::vector<SpilledTile>> tiles_;  // by scale, in x, y, z order
 };
@@ -277,8 +279,8 @@ BuiltMapFile buildMapFile(const Scans& scans, const AccumulateOptions& reading, 
                           const std::function<MapMetadata(const PointCounts&)>& metadataOf,
                           const BuildMapFileOptions& options,
                           const std::function<void(const AccumulateProgress&)>& progress) {
-  require(options.max_memory >= kLeastBuildMemory, "max_memory", static_cast<double>(options.max_memory),
-          "must be at least " + std::to_string(kLeastBuildMemory) + " bytes");
+  require(options.max_memory >= kMinBuildMemory, "max_memory", static_cast<double>(options.max_memory),
+          "must be at least " + std::to_string(kMinBuildMemory) + " bytes");
   if (options.refine.method != RefineMethod::Agglomerate)
     throw std::invalid_argument("method: only agglomeration goes tile by tile");
   if (options.save.precision != Precision::Exact) throw std::invalid_argument("precision: build first, then finish");
@@ -299,7 +301,7 @@ BuiltMapFile buildMapFile(const Scans& scans, const AccumulateOptions& reading, 
   built.counts = accumulateScansInParts(
       scans, reading, share,
       [&](const MomentGrid<3>& moments) {
-        giveBackMemory();  // that of the sums before
+        giveBackMemory();  // memory of the previous moments
         builder.add(moments);
       },
       progress);

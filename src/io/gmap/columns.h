@@ -34,7 +34,8 @@ inline double fromBits(std::uint64_t bits) {
   return value;
 }
 
-/// A column: first the lowest byte of all its numbers, then the next. Neighbours in a map differ in the low bytes only.
+/// Writes columns of numbers: first the lowest byte of all numbers, then the next byte, and so on. Neighbours in a map
+/// differ only in the low bytes, so the other bytes compress well.
 class ColumnWriter {
  public:
   explicit ColumnWriter(std::string& bytes) : bytes_(bytes) {}

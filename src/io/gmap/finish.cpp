@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "editing/thin_map.h"
+#include "editing/keep_cells.h"
 #include "gaussmap/io/gmap/map_file.h"
 #include "io/gmap/quantise.h"
 
@@ -19,17 +19,17 @@ GaussianMap<D> finish(const GaussianMap<D>& map, int finest_scale) {
   std::vector<std::vector<char>> keep;
   keep.reserve(std::size_t(map.scales()));
   for (int s = 0; s < map.scales(); ++s) keep.emplace_back(map.cellCount(s), s >= finest_scale ? 1 : 0);
-  const GaussianMap<D> thin = thinMap<D>(map, keep);
+  const GaussianMap<D> thin = keepCells<D>(map, keep);
   std::vector<MapScale<D>> scales;
   for (int s = 0; s < map.scales(); ++s) {
     scales.push_back(thin.scale(s));
     MapScale<D>& scale = scales.back();
     scale.gaussians.clear();
     for (std::size_t i = 0; i < thin.gaussianCount(s); ++i)
-      scale.gaussians.push_back(restore<D>(quantise<D>(thin.localGaussian(i, s), map.options().noise),
-                                           map.options().noise, map.grid().side(s)));
+      scale.gaussians.push_back(dequantise<D>(quantise<D>(thin.localGaussian(i, s), map.options().noise),
+                                              map.options().noise, map.grid().side(s)));
     scale.moments.clear();
-    for (float& log_odds : scale.log_odds) log_odds = restoreLogOdds(quantiseLogOdds(log_odds));
+    for (float& log_odds : scale.log_odds) log_odds = dequantiseLogOdds(quantiseLogOdds(log_odds));
   }
   return GaussianMap<D>(map.options(), std::move(scales));
 }

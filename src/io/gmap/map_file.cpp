@@ -15,7 +15,7 @@ using namespace detail;
 
 namespace {
 
-/// Tiles of one scale, one after the other.
+/// Reads the cells of all tiles of one scale.
 template <int D>
 Tile<D> readTiles(const Database& database, int s, const MapOptions& options) {
   Tile<D> all;

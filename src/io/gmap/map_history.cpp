@@ -11,7 +11,7 @@ namespace {
 
 using HistoryJson = nlohmann::ordered_json;
 
-/// File names need not be UTF-8, as JSON must be: their other bytes are replaced.
+/// Returns JSON as text. File names may not be valid UTF-8, but JSON must be, so invalid bytes are replaced.
 std::string textOf(const HistoryJson& json) {
   return json.dump(-1, ' ', false, HistoryJson::error_handler_t::replace);
 }
@@ -37,7 +37,8 @@ struct BudgetWriter {
   void operator()(const MaxError& budget) const { step["max_error"] = budget.metres; }
 };
 
-/// `own` with the values that `details` has for its members, behind the other members of `details`; nulls are left out.
+/// Joins two objects: first the members that only `details` has, then the members of `own`. A member that both have
+/// takes its value from `details`. Members of `own` that are null are left out.
 std::string withDetails(const HistoryJson& own, const std::string& details) {
   const HistoryJson given = parseObject(details);
   HistoryJson step = HistoryJson::object();

@@ -22,9 +22,9 @@ using namespace detail;
 
 namespace {
 
-constexpr std::size_t kTilesRead = 64;  // read before they are decoded together
+constexpr std::size_t kTilesRead = 64;  // number of tiles read before they are decoded in parallel
 
-/// Cells low to high, both included, along every axis.
+/// Cells from low to high along every axis, both included.
 template <int D>
 struct KeyRange {
   CellKey<D> low, high;
@@ -34,7 +34,7 @@ struct KeyRange {
       if (key[axis] < low[axis] || key[axis] > high[axis]) return false;
     return true;
   }
-  /// The blocks of `span` cells that hold them.
+  /// Returns the blocks of `span` cells per side that contain these cells.
   KeyRange blocks(std::int64_t span) const {
     KeyRange blocks;
     for (std::size_t axis = 0; axis < D; ++axis) {
@@ -45,15 +45,14 @@ struct KeyRange {
   }
 };
 
-/// The finest cells that meet a box. Those of coarser scales follow by whole numbers, so that a cell that meets the box
-/// never lies in one that does not.
+/// Returns the finest cells that intersect a box. The cells of the coarser scales are computed from them in integers,
+/// so the parent of a cell in the range is always in the range of the next scale.
 template <int D>
 KeyRange<D> finestCells(const Box<D>& box, double side) {
   KeyRange<D> range;
   const auto keyOf = [side](double coordinate) {
-    constexpr double kLeast = std::numeric_limits<std::int32_t>::min(),
-                     kMost = std::numeric_limits<std::int32_t>::max();
-    return static_cast<std::int32_t>(std::clamp(std::floor(coordinate / side), kLeast, kMost));
+    constexpr double kMin = std::numeric_limits<std::int32_t>::min(), kMax = std::numeric_limits<std::int32_t>::max();
+    return static_cast<std::int32_t>(std::clamp(std::floor(coordinate / side), kMin, kMax));
   };
   for (int axis = 0; axis < D; ++axis) {
     if (!(box.low(axis) <= box.high(axis)))
@@ -68,7 +67,7 @@ KeyRange<D> finestCells(const Box<D>& box, double side) {
 template <int D>
 using Keys = std::vector<CellKey<D>>;
 
-/// The cells above these, sorted, each once.
+/// Returns the parents of these cells, sorted and without duplicates.
 template <int D>
 Keys<D> parentsOf(const Keys<D>& keys, const Grid<D>& grid, int scale) {
   Keys<D> parents;
@@ -122,7 +121,8 @@ struct MapReader<D>::State {
   State(const std::filesystem::path& file, const MapReaderOptions& how) : path(file), options(how) { open(); }
 
   void open() {
-    // Looked at before it is opened: if it is replaced in between, the next refresh() opens it once more.
+    // The identity is read before the file is opened: if the file is replaced in between, the next
+    // refresh() reopens it.
     const FileIdentity identity = identityOf(path);
     version = std::make_unique<Version>(path, identity, options.cache_bytes);
   }
@@ -166,7 +166,7 @@ struct MapReader<D>::State {
     for (int s = grid.scales() - 1; s >= finest_scale; --s) tiles[static_cast<std::size_t>(s)] = tilesOf(s, rangeOf(s));
 
     std::vector<Tile<D>> cells(scales);
-    Keys<D> wanted, with_children;  // cells above those that are kept, and above all that the map has
+    Keys<D> wanted, with_children;  // parents of the cells kept, and of all cells read
     for (int s = finest_scale; s < grid.scales(); ++s) {
       const KeyRange<D> range = rangeOf(s);
       Tile<D>& kept = cells[static_cast<std::size_t>(s)];

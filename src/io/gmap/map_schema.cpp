@@ -12,22 +12,22 @@
 namespace gaussmap::detail {
 namespace {
 
-constexpr std::int32_t kLeastSpan = 32;
+constexpr std::int32_t kMinSpan = 32;
 
-/// Shortest text that reads back as the same double, in any locale.
+/// Returns the shortest text that reads back as the same double, in any locale.
 std::string exactText(double value) {
   char text[64];
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
-/// Binds x, y, z to three parameters in a row; a plane has z = 0.
+/// Binds x, y, z to three consecutive parameters. A 2-D map has z = 0.
 template <int D>
 void bindTile(Statement& statement, int first, const CellKey<D>& tile) {
   for (std::size_t axis = 0; axis < 3; ++axis)
     statement.bind(first + static_cast<int>(axis), axis < D ? std::int64_t{tile[axis]} : std::int64_t{0});
 }
 
-/// One look at the file; openMap() looks again if it was replaced meanwhile.
+/// Opens the file once. openMap() tries again if the file was replaced meanwhile.
 Database openOnce(const std::filesystem::path& path, Database::Mode mode) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) throw FileError(path, "does not exist");
@@ -53,7 +53,7 @@ Database openOnce(const std::filesystem::path& path, Database::Mode mode) {
 
 std::int32_t tileSpan(const MapOptions& options) {
   std::int64_t span = options.ratio;
-  while (span < kLeastSpan) span *= options.ratio;
+  while (span < kMinSpan) span *= options.ratio;
   return static_cast<std::int32_t>(span);
 }
 

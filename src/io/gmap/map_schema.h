@@ -12,19 +12,20 @@
 #include "io/gmap/sqlite.h"
 #include "io/gmap/tile_codec.h"
 
-// What a .gmap looks like inside: the rows of its tables, named once for all who read and write them.
+// The SQLite tables of a .gmap file, for all code that reads or writes them.
 namespace gaussmap::detail {
 
-inline constexpr const char* kUserPrefix = "user.";  // of the caller's metadata, so that names cannot collide
+inline constexpr const char* kUserPrefix = "user.";  // prefix of the caller's entries, so that names cannot collide
 
-/// Cells along the side of a tile: a power of the ratio, so that a tile is a block of whole parents.
+/// Returns the number of cells along the side of a tile. It is a power of the ratio, so the children of a cell are all
+/// in the same tile.
 std::int32_t tileSpan(const MapOptions& options);
 
-/// The tile that a cell lies in.
+/// Returns the tile that contains a cell.
 template <int D>
 CellKey<D> tileOf(const CellKey<D>& key, std::int32_t span);
 
-/// Tells a file from another that takes its place later.
+/// Identity of a file. It shows whether another file has replaced it.
 struct FileIdentity {
   std::uint64_t device = 0, inode = 0, bytes = 0;
   std::int64_t changed = 0;  // [ns]
@@ -32,24 +33,24 @@ struct FileIdentity {
     return a.device == b.device && a.inode == b.inode && a.bytes == b.bytes && a.changed == b.changed;
   }
 };
-/// Throws FileError if there is no such file.
+/// Returns the identity of a file. Throws FileError if the file does not exist.
 FileIdentity identityOf(const std::filesystem::path& path);
 
-/// Opens a map file and checks whose it is.
+/// Opens a map file and checks its application id and schema version. Throws FileError if it is not a map.
 Database openMap(const std::filesystem::path& path, Database::Mode mode = Database::Mode::ReadOnly);
 
-/// All metadata of a file, the caller's with their prefix.
+/// Reads all metadata of a file. The caller's entries have the prefix kUserPrefix.
 MapMetadata readEntries(const Database& database);
-/// Those of the caller, without it.
+/// Returns only the caller's entries, without the prefix.
 MapMetadata userEntries(const MapMetadata& entries);
 void writeEntries(Database& database, const MapMetadata& entries);
 
-/// What the file itself tells of a map; the numbers of cells and Gaussians by scale, finest first.
+/// Returns the entries that describe a map. `cells` and `gaussians` are the numbers per scale, finest first.
 template <int D>
 MapMetadata ownEntries(const MapOptions& options, const std::vector<std::size_t>& cells,
                        const std::vector<std::size_t>& gaussians);
 
-/// A number among the metadata. Throws FileError if it is none.
+/// Returns a number from the metadata. Throws FileError if the entry is missing or is not a number.
 template <typename Number>
 Number numberIn(const std::filesystem::path& path, const MapMetadata& entries, const std::string& name) {
   const auto entry = entries.find(name);
@@ -62,24 +63,24 @@ Number numberIn(const std::filesystem::path& path, const MapMetadata& entries, c
   return value;
 }
 
-/// The options that the metadata tell. Throws FileError if they are of another dimension.
+/// Returns the map options from the metadata. Throws FileError if the map has another dimension.
 template <int D>
 MapOptions readOptions(const std::filesystem::path& path, const MapMetadata& entries);
 
-/// Makes the tables of a map file; opens a transaction.
+/// Opens a transaction and creates the tables of a map file.
 void beginMap(Database& database);
 
-/// One row of the table of tiles.
+/// One row of the table `tiles`.
 template <int D>
 struct TileRow {
   int scale = 0;
   CellKey<D> tile{};
   std::size_t cells = 0;
   std::size_t gaussians = 0;
-  std::string bytes;  ///< of encodeTile()
+  std::string bytes;  ///< the result of encodeTile()
 };
 
-/// Writes tiles, replacing those of the same address.
+/// Writes tiles. A tile with the same address is replaced.
 template <int D>
 class TileInsert {
  public:
@@ -91,7 +92,7 @@ class TileInsert {
   Statement insert_;
 };
 
-/// Addresses of tiles of one scale whose coordinates lie in [low, high], in x, y, z order.
+/// Returns the addresses of the tiles of one scale whose coordinates lie in [low, high], in x, y, z order.
 template <int D>
 std::vector<CellKey<D>> tilesWithin(const Database& database, int scale, const CellKey<D>& low, const CellKey<D>& high);
 
@@ -101,14 +102,14 @@ class TileSelect {
  public:
   explicit TileSelect(const Database& database)
       : select_(database, "SELECT data FROM tiles WHERE scale = ? AND x = ? AND y = ? AND z = ?") {}
-  /// The bytes of a tile, to be decoded; "" if there is no such tile.
+  /// Returns the encoded bytes of a tile; "" if the tile does not exist.
   std::string read(int scale, const CellKey<D>& tile);
 
  private:
   Statement select_;
 };
 
-/// decodeTile() whose complaint names file and tile. Throws FileError.
+/// Decodes a tile with decodeTile(). Throws FileError with the file and the tile if this fails.
 template <int D>
 Tile<D> decodeRow(const std::filesystem::path& path, std::string_view bytes, const TileAddress<D>& address,
                   const MapOptions& options);

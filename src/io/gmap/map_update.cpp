@@ -17,7 +17,7 @@
 #include "gaussmap/io/gmap/map_file.h"
 #include "io/files/atomic_file.h"
 #include "io/gmap/assemble_map.h"
-#include "io/gmap/cut_tiles.h"
+#include "io/gmap/make_tiles.h"
 #include "io/gmap/map_schema.h"
 #include "mapping/update_part.h"
 
@@ -26,9 +26,9 @@ using namespace detail;
 
 namespace {
 
-constexpr std::size_t kTilesEncoded = 256;  // encoded together
+constexpr std::size_t kTilesEncoded = 256;  // number of tiles encoded at once
 
-/// What the metadata of a map file tell that is to be updated.
+/// The metadata of the map file to be updated.
 template <int D>
 struct Header {
   MapMetadata entries;
@@ -38,9 +38,9 @@ struct Header {
 
   Header(const std::filesystem::path& path, const Database& database) : entries(readEntries(database)) {
     options = readOptions<D>(path, entries);
-    if (entries.count("grows") + entries.count("occupancy") == 0) {  // of the first programs: only the tiles tell
+    if (entries.count("grows") + entries.count("occupancy") == 0) {  // first versions: only the tiles show this
       const GaussianMap<D> map = load<D>(path);
-      entries["grows"] = map.canGrow() ? "1" : "0";
+      entries["grows"] = map.acceptsScans() ? "1" : "0";
       entries["occupancy"] = map.hasOccupancy() ? "1" : "0";
     }
     if (numberIn<int>(path, entries, "grows") != 1)
@@ -60,11 +60,11 @@ struct Header {
   }
 };
 
-/// A tile as the file has it.
+/// A tile as it is in the file.
 template <int D>
 struct OldTile {
   Tile<D> all;
-  Tile<D> outside;  // cells of it that are not under the coarsest cells with new points
+  Tile<D> outside;  // its cells that are not under the coarsest cells with new points
 };
 template <int D>
 using OldTiles = std::map<CellKey<D>, OldTile<D>>;
@@ -79,7 +79,7 @@ bool sameTile(const Tile<D>& a, const Tile<D>& b) {
          std::equal(a.gaussians.begin(), a.gaussians.end(), b.gaussians.begin(), b.gaussians.end(), same);
 }
 
-/// The cells in the order that a saved map has them in.
+/// Sorts the cells into the order that save() uses.
 template <int D>
 Tile<D> sortedTile(const Tile<D>& tile, const MapOptions& options, int s) {
   std::vector<std::size_t> first(tile.keys.size() + 1, 0);
@@ -129,7 +129,7 @@ class Updater {
         updatePart<D>(before, added_, header_.occupancy, refining, [&](int s, std::size_t cells) {
           const auto at = static_cast<std::size_t>(s);
           const std::size_t others = header_.gaussians[at] - before.gaussianCount(s);
-          const std::size_t most = mostGaussians(at, header_.cells[at] - before.cellCount(s) + cells);
+          const std::size_t most = maxGaussians(at, header_.cells[at] - before.cellCount(s) + cells);
           return most - std::min(most, others);
         });
     database_.execute("BEGIN");
@@ -150,7 +150,7 @@ class Updater {
 
  private:
   /// How many Gaussians a coarse scale of the whole map may have when it has so many cells.
-  std::size_t mostGaussians(std::size_t s, std::size_t cells) const {
+  std::size_t maxGaussians(std::size_t s, std::size_t cells) const {
     constexpr double kRounding = 1e-9;
     const double per_cell = options_.budget ? *options_.budget
                                             : static_cast<double>(header_.gaussians[s]) /
@@ -159,26 +159,26 @@ class Updater {
     return static_cast<std::size_t>(std::clamp(most, static_cast<double>(cells), 4294967295.0));
   }
 
-  /// Tiles of scale s with cells under a coarsest cell.
+  /// Adds the tiles of scale s that contain descendants of a coarsest cell.
   void addTilesUnder(const CellKey<D>& root, int s, std::set<CellKey<D>>& tiles) const {
     const std::int64_t span = grid_.cellsAlongSide(grid_.scales() - 1) / grid_.cellsAlongSide(s);
     CellKey<D> low, high;
     for (std::size_t axis = 0; axis < D; ++axis) {
-      constexpr std::int64_t kLeast = std::numeric_limits<std::int32_t>::min(),
-                             kMost = std::numeric_limits<std::int32_t>::max();
+      constexpr std::int64_t kMin = std::numeric_limits<std::int32_t>::min(),
+                             kMax = std::numeric_limits<std::int32_t>::max();
       const std::int64_t first = std::int64_t{root[axis]} * span;
-      low[axis] = static_cast<std::int32_t>(std::clamp(first, kLeast, kMost));
-      high[axis] = static_cast<std::int32_t>(std::clamp(first + span - 1, kLeast, kMost));
+      low[axis] = static_cast<std::int32_t>(std::clamp(first, kMin, kMax));
+      high[axis] = static_cast<std::int32_t>(std::clamp(first + span - 1, kMin, kMax));
     }
     low = tileOf<D>(low, span_);
     high = tileOf<D>(high, span_);
-    if (low == high)  // nearly always: a look into the table of tiles would take longer than all the rest
+    if (low == high)  // nearly always; a query would take longer than everything else
       tiles.insert(low);
     else
       for (const CellKey<D>& tile : tilesWithin<D>(database_, s, low, high)) tiles.insert(tile);
   }
 
-  /// Everything under the coarsest cells that get new points.
+  /// Reads the coarsest cells that get new points, with all their descendants.
   GaussianMap<D> readPart() {
     TileSelect<D> select(database_);
     std::vector<Tile<D>> part(old_.size());
@@ -201,7 +201,7 @@ class Updater {
     }
     try {
       GaussianMap<D> map = assembleMap<D>(header_.options, std::move(part));
-      bool fits = map.canGrow() && (map.empty() || map.hasOccupancy() == header_.occupancy);
+      bool fits = map.acceptsScans() && (map.empty() || map.hasOccupancy() == header_.occupancy);
       for (int s = 0; s < grid_.scales(); ++s)
         fits &= map.cellCount(s) <= header_.cells[std::size_t(s)] &&
                 map.gaussianCount(s) <= header_.gaussians[std::size_t(s)];
@@ -212,10 +212,10 @@ class Updater {
     }
   }
 
-  /// Writes the tiles of a scale that are others now; returns how many.
+  /// Writes the tiles of a scale that have changed. Returns their number.
   std::size_t writeTiles(const GaussianMap<D>& after, int s) {
     const OldTiles<D>& old = old_[static_cast<std::size_t>(s)];
-    const auto cut = tilesOf<D>(after.scale(s), span_);
+    const auto cut = cellsByTile<D>(after.scale(s), span_);
     std::vector<const std::pair<const CellKey<D>, std::vector<IndexRange>>*> all;
     all.reserve(cut.size());
     for (const auto& entry : cut) all.push_back(&entry);
@@ -225,7 +225,7 @@ class Updater {
       std::vector<TileRow<D>> rows(std::min(kTilesEncoded, all.size() - begin));
       parallelFor(rows.size(), options_.threads, 1, [&](std::size_t i) {
         const auto& [address, runs] = *all[begin + i];
-        Tile<D> tile = cutTile<D>(after, s, runs);
+        Tile<D> tile = makeTile<D>(after, s, runs);
         const auto before = old.find(address);
         if (before != old.end()) {
           if (!before->second.outside.keys.empty()) {
@@ -267,8 +267,8 @@ class Updater {
   std::vector<OldTiles<D>> old_;
 };
 
-/// Fills the part file with what the target holds. (std::filesystem::copy_file() has but "Input/output error" to say of
-/// a full disk.)
+/// Copies the target to the part file. (If the disk is full, std::filesystem::copy_file() reports
+/// only "Input/output error".)
 void copyTarget(AtomicFile& file) {
   std::ifstream source(file.target(), std::ios::binary);
   std::vector<char> piece(std::size_t{1} << 20);
@@ -287,8 +287,8 @@ MapUpdate updateMap(const std::filesystem::path& path, const MomentGrid<D>& adde
   if (options.budget)
     require(std::isfinite(*options.budget) && *options.budget >= 1.0, "budget", *options.budget,
             "must be at least 1 Gaussian per cell");
-  growingMapOptions<D>(path);  // complains before a part file is there
-  AtomicFile file(path);       // locked from here on: what is read now, nobody else replaces
+  growingMapOptions<D>(path);  // throws before a part file is created
+  AtomicFile file(path);       // from here on no other writer can replace the map
   copyTarget(file);
   MapUpdate update;
   {

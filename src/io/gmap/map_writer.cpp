@@ -4,7 +4,7 @@
 
 #include "core/parallel.h"
 #include "io/files/atomic_file.h"
-#include "io/gmap/cut_tiles.h"
+#include "io/gmap/make_tiles.h"
 #include "io/gmap/map_schema.h"
 
 namespace gaussmap {
@@ -15,12 +15,12 @@ namespace {
 constexpr const char* kFinalText =
     "means within 1/16 standard deviation along each axis, standard deviations within 5 % in every direction, weights "
     "and log-odds within 1/32";
-constexpr std::size_t kTilesAtOnce = 256;  // compressed together: bounds the memory of a save
+constexpr std::size_t kTilesAtOnce = 256;  // number of tiles compressed at once; limits the memory of a save
 
 template <int D>
 void writeTiles(const GaussianMap<D>& map, int s, const SaveOptions& options, TileInsert<D>& insert) {
   const std::int32_t span = tileSpan(map.options());
-  const auto tiles = tilesOf<D>(map.scale(s), span);
+  const auto tiles = cellsByTile<D>(map.scale(s), span);
   std::vector<TileRow<D>> rows;
   std::vector<const std::vector<IndexRange>*> runs;
   for (auto next = tiles.begin(); next != tiles.end();) {
@@ -31,7 +31,7 @@ void writeTiles(const GaussianMap<D>& map, int s, const SaveOptions& options, Ti
       runs.push_back(&next->second);
     }
     parallelFor(rows.size(), options.threads, 1, [&](std::size_t i) {
-      const Tile<D> tile = cutTile<D>(map, s, *runs[i]);
+      const Tile<D> tile = makeTile<D>(map, s, *runs[i]);
       rows[i].cells = tile.keys.size();
       rows[i].gaussians = tile.gaussianCount();
       rows[i].bytes =
@@ -50,12 +50,12 @@ void writeMap(Database& database, const GaussianMap<D>& map, const MapMetadata& 
     gaussians.push_back(map.gaussianCount(s));
   }
   MapMetadata entries = ownEntries<D>(map.options(), cells, gaussians);
-  const bool finished = options.precision == Precision::Finished;
-  entries["grows"] = map.canGrow() && !finished ? "1" : "0";
+  const bool is_final = options.precision == Precision::Finished;
+  entries["grows"] = map.acceptsScans() && !is_final ? "1" : "0";
   entries["occupancy"] = map.hasOccupancy() ? "1" : "0";
   for (const auto& [name, value] : metadata)
     if (name != kFinalEntry) entries[kUserPrefix + name] = value;
-  if (finished) entries[std::string(kUserPrefix) + kFinalEntry] = kFinalText;
+  if (is_final) entries[std::string(kUserPrefix) + kFinalEntry] = kFinalText;
   writeEntries(database, entries);
   TileInsert<D> insert(database);
   for (int s = map.scales() - 1; s >= 0; --s) writeTiles<D>(map, s, options, insert);

@@ -11,10 +11,10 @@ namespace {
 constexpr double kLowerStep = 1.0 / 32.0;  // of the diagonal of the row
 constexpr double kMeanStep = 1.0 / 8.0;    // of the standard deviation with the other coordinates fixed
 constexpr double kLogOddsStep = 1.0 / 16.0;
-constexpr double kMostLogOdds = 1e6;
-constexpr double kMostOffset = 0.501;      // of a mean from the cell's centre, in sides: as GaussianMap allows
+constexpr double kMaxLogOdds = 1e6;
+constexpr double kMaxOffset = 0.501;       // of a mean from the cell's centre, in sides: as GaussianMap allows
 constexpr std::int64_t kWeightSteps = 16;  // from one power of two to the next
-constexpr std::int64_t kMostExponent = 1000;
+constexpr std::int64_t kMaxExponent = 1000;
 
 constexpr std::int64_t kOctave = 16;
 /// 2^(k / 16), and 2^((k + 1/2) / 16), where one rounds to the next.
@@ -49,7 +49,7 @@ std::int64_t sixteenths(double value) {
 
 double fromSixteenths(std::int64_t number) {
   const std::int64_t octave = (number >= 0 ? number : number - (kOctave - 1)) / kOctave;
-  if (std::abs(octave) > kMostExponent) throw std::domain_error("a number that is too large or too small");
+  if (std::abs(octave) > kMaxExponent) throw std::domain_error("a number that is too large or too small");
   return std::ldexp(kPowers[number - octave * kOctave], static_cast<int>(octave));
 }
 
@@ -116,7 +116,7 @@ std::int64_t quantiseWeight(double weight) {
 
 double restoreWeight(std::int64_t number) {
   const std::int64_t exponent = (number >= 0 ? number : number - (kWeightSteps - 1)) / kWeightSteps;
-  if (std::abs(exponent) > kMostExponent) throw std::domain_error("a weight that is too large or too small");
+  if (std::abs(exponent) > kMaxExponent) throw std::domain_error("a weight that is too large or too small");
   const std::int64_t digits = number - exponent * kWeightSteps + kWeightSteps;
   return std::ldexp(static_cast<double>(digits) / (2.0 * kWeightSteps), static_cast<int>(exponent));
 }
@@ -151,7 +151,7 @@ QuantisedGaussian<D> quantise(const Gaussian<D>& gaussian, double noise) {
 }
 
 template <int D>
-Gaussian<D> restore(const QuantisedGaussian<D>& numbers, double noise, double side) {
+Gaussian<D> dequantise(const QuantisedGaussian<D>& numbers, double noise, double side) {
   const Factor<D> factor = restoreFactor<D>(numbers, noise);
   Gaussian<D> gaussian;
   gaussian.weight = restoreWeight(numbers.weight);
@@ -165,7 +165,7 @@ Gaussian<D> restore(const QuantisedGaussian<D>& numbers, double noise, double si
   const Vector<D> steps = meanSteps<D>(factor);
   for (int axis = 0; axis < D; ++axis) {
     const double offset = static_cast<double>(numbers.mean[static_cast<std::size_t>(axis)]) * steps(axis);
-    gaussian.mean(axis) = std::clamp(offset, -kMostOffset * side, kMostOffset * side);
+    gaussian.mean(axis) = std::clamp(offset, -kMaxOffset * side, kMaxOffset * side);
   }
   if (!gaussian.cov.allFinite() || !gaussian.mean.allFinite())
     throw std::domain_error("numbers that are too large or too small");
@@ -173,16 +173,16 @@ Gaussian<D> restore(const QuantisedGaussian<D>& numbers, double noise, double si
 }
 
 std::int64_t quantiseLogOdds(float log_odds) {
-  return wholeNumber(std::clamp(static_cast<double>(log_odds), -kMostLogOdds, kMostLogOdds) / kLogOddsStep);
+  return wholeNumber(std::clamp(static_cast<double>(log_odds), -kMaxLogOdds, kMaxLogOdds) / kLogOddsStep);
 }
 
-float restoreLogOdds(std::int64_t number) {
+float dequantiseLogOdds(std::int64_t number) {
   return static_cast<float>(static_cast<double>(number) * kLogOddsStep);
 }
 
 #define GAUSSMAP_INSTANTIATE(D)                                          \
   template QuantisedGaussian<D> quantise<D>(const Gaussian<D>&, double); \
-  template Gaussian<D> restore<D>(const QuantisedGaussian<D>&, double, double);
+  template Gaussian<D> dequantise<D>(const QuantisedGaussian<D>&, double, double);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)
 #undef GAUSSMAP_INSTANTIATE

@@ -9,7 +9,7 @@
 
 namespace gaussmap::detail {
 
-/// A Gaussian in whole numbers: what a finished map keeps of it.
+/// A Gaussian in whole numbers: what a final map keeps of it.
 ///
 /// The covariance is S = L L', L its lower Cholesky factor. With E = L^-1 L~ - I for the factor L~ that comes back, the
 /// standard deviation in every direction is right but for a factor in 1 +- |E|. The diagonal of L is kept in sixteenths
@@ -35,10 +35,10 @@ QuantisedGaussian<D> quantise(const Gaussian<D>& gaussian, double noise);
 /// The Gaussian that comes back; the mean is kept within the cell. Throws std::domain_error if the numbers stand for
 /// none that doubles can hold.
 template <int D>
-Gaussian<D> restore(const QuantisedGaussian<D>& numbers, double noise, double side);
+Gaussian<D> dequantise(const QuantisedGaussian<D>& numbers, double noise, double side);
 
 /// Log-odds in sixteenths; beyond +-1e6 they are cut.
 std::int64_t quantiseLogOdds(float log_odds);
-float restoreLogOdds(std::int64_t number);
+float dequantiseLogOdds(std::int64_t number);
 
 }  // namespace gaussmap::detail

@@ -13,7 +13,7 @@
 namespace gaussmap::detail {
 namespace {
 
-/// Cells of one tile as they stand in the file: moments at the finest scale, else Gaussians.
+/// The cells of one tile as they are stored in the file: moments at the finest scale, else Gaussians.
 struct Piece {
   std::vector<CellKey<3>> keys;
   std::vector<CellMoments<3>> moments;
@@ -40,7 +40,7 @@ struct Piece {
   }
 };
 
-/// Adds the sums of cells that are there more than once.
+/// Merges cells that occur more than once, by adding their moments.
 Piece withEachCellOnce(const Piece& piece) {
   std::vector<std::uint32_t> order(piece.keys.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -87,7 +87,7 @@ void SpilledCells::add(const MomentGrid<3>& moments) {
   std::map<CellKey<3>, std::vector<std::uint32_t>> by_tile;
   std::vector<std::uint32_t>* last = nullptr;
   CellKey<3> last_tile{};
-  for (std::size_t i = 0; i < moments.size(); ++i) {  // neighbours in the grid were seen together
+  for (std::size_t i = 0; i < moments.size(); ++i) {  // consecutive cells are often in the same tile
     const CellKey<3> tile = tileOf<3>(moments[i].key, span);
     if (last == nullptr || tile != last_tile) last = &by_tile[tile];
     last_tile = tile;

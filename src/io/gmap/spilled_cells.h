@@ -11,27 +11,27 @@
 
 namespace gaussmap::detail {
 
-/// Cells of one scale in memory: those of some tiles, one tile after the other, each in key order.
+/// The cells of some tiles of one scale in memory: tile after tile, in key order within each tile.
 struct CellBatch {
   MapScale<3> cells;
-  std::vector<double> areas;          ///< per Gaussian, occupied finest cells that it stands for
+  std::vector<double> areas;          ///< per Gaussian: number of occupied finest cells that it represents
   std::vector<CellKey<3>> tiles;      ///< in x, y, z order
   std::vector<std::size_t> tile_end;  ///< index behind the last cell of each tile
 };
 
-/// The cells of one scale, by tile, most of them on the disk.
+/// The cells of one scale, stored on disk by tile.
 class SpilledCells {
  public:
   SpilledCells(SpillFile& file, const MapOptions& options, int scale);
 
-  /// Adds sums to the cells of the finest scale.
+  /// Adds moments to the cells of the finest scale.
   void add(const MomentGrid<3>& moments);
-  /// Adds cells of a coarser scale, none of which is here yet.
+  /// Adds cells of a coarser scale. None of them may have been added before.
   void add(const MapScale<3>& cells, const std::vector<double>& areas);
 
-  /// All tiles, in x, y, z order, in batches of about so many bytes or of one tile.
+  /// Returns all tiles, in x, y, z order, in batches of at most `bytes` bytes. A larger tile is a batch of its own.
   std::vector<std::vector<CellKey<3>>> batches(std::size_t bytes) const;
-  /// Reads some tiles; sums that were added bit by bit are written back as one, for the next time.
+  /// Reads some tiles. Moments that were added in several pieces are written back as one piece, for the next read.
   CellBatch load(const std::vector<CellKey<3>>& tiles, int threads);
 
  private:

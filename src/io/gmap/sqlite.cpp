@@ -12,14 +12,14 @@
 namespace gaussmap::detail {
 namespace {
 
-/// Absolute, because SQLite gives names like ":memory:" a meaning of their own.
+/// Returns the absolute path, because names like ":memory:" have a special meaning in SQLite.
 std::string absolutePath(const std::filesystem::path& path) {
   std::error_code error;
   const std::filesystem::path full = std::filesystem::absolute(path, error);
   return error ? path.string() : full.string();
 }
 
-/// Every character that could mean something in a URI as %hh.
+/// Returns a URI in which every special character is written as %hh.
 std::string immutableUri(const std::filesystem::path& path) {
   constexpr const char* kHexDigits = "0123456789ABCDEF";
   std::string uri = "file:";
@@ -54,7 +54,7 @@ Database::Database(const std::filesystem::path& path, Mode mode) : path_(path), 
   handle_.reset(raw);
   if (code != SQLITE_OK) fail("cannot be opened");
   if (read_only || mode == Mode::ChangeCopy) distrust();
-  if (!read_only)  // a file written beside its target needs no journal: if the writer dies, nobody has seen it
+  if (!read_only)  // a part file needs no journal: if the writer dies, no reader has seen it
     execute("PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF;");
 }
 
@@ -68,14 +68,14 @@ void Database::distrust() {
     sqlite3_db_config(handle(), danger, 0, nullptr);
   // Pages that point to each other in a ring, or a view in the place of a table, would else be read for ever. A row
   // takes some 20 steps and at least 20 bytes.
-  most_steps_ = 1000 + static_cast<std::int64_t>(bytes / 100);
-  steps_left_ = std::make_unique<std::int64_t>(most_steps_);
+  max_steps_ = 1000 + static_cast<std::int64_t>(bytes / 100);
+  steps_left_ = std::make_unique<std::int64_t>(max_steps_);
   sqlite3_progress_handler(
       handle(), 1000, [](void* left) { return --*static_cast<std::int64_t*>(left) < 0 ? 1 : 0; }, steps_left_.get());
 }
 
 void Database::renewSteps() const {
-  if (steps_left_) *steps_left_ = most_steps_;
+  if (steps_left_) *steps_left_ = max_steps_;
 }
 
 void Database::execute(const std::string& sql) {

@@ -13,17 +13,17 @@ struct sqlite3_stmt;
 
 namespace gaussmap::detail {
 
-/// A thin owner of SQLite handles: every error becomes a FileError with the path of the database.
-/// A file is read as if nobody wrote to it (it is only ever replaced as a whole): without locks, without regard for
-/// journals beside it, and with no more steps a statement and no longer values than its size warrants, whatever its
-/// pages say.
+/// Owns a SQLite handle. Every error becomes a FileError with the path of the database.
+///
+/// Map files are only ever replaced as a whole. So a file is read without locks, and journals beside it are ignored.
+/// The size of the file limits the steps per statement and the length of the values, whatever its pages say.
 class Database {
  public:
   enum class Mode {
     ReadOnly,
     CreateForBulkWrite,
-    ChangeCopy,  ///< of a file that nobody else looks at: without a journal, but distrusted as by ReadOnly
-    InMemory     ///< the path is a name for messages
+    ChangeCopy,  ///< changes a file that nobody else reads: no journal, but the limits of ReadOnly
+    InMemory     ///< the path is only used in messages
   };
   Database(const std::filesystem::path& path, Mode mode);
 
@@ -39,13 +39,13 @@ class Database {
   };
   friend class Statement;
   void distrust();
-  /// A statement begins.
+  /// Gives a new statement the full number of steps.
   void renewSteps() const;
 
   std::filesystem::path path_;
   Mode mode_;
   std::unique_ptr<std::int64_t> steps_left_;  // in thousands
-  std::int64_t most_steps_ = 0;
+  std::int64_t max_steps_ = 0;
   std::unique_ptr<sqlite3, Close> handle_;
 };
 
@@ -56,13 +56,13 @@ class Statement {
   void bind(int index, std::int64_t value);
   void bind(int index, std::string_view text);
   void bindBlob(int index, std::string_view bytes);
-  /// True while there is a row; false when done.
+  /// Returns true if there is a row, false if the statement is done.
   bool step();
   void reset();
 
   std::int64_t integer(int column) const;
   std::string text(int column) const;
-  /// Valid until the next step.
+  /// The result is valid until the next step().
   std::string_view blob(int column) const;
 
  private:

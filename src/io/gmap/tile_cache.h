@@ -11,15 +11,15 @@
 
 namespace gaussmap::detail {
 
-/// Decoded tiles, the least recently used of which go when they take more than `max_bytes`.
+/// Cache of decoded tiles. If they take more than `max_bytes`, the least recently used tiles are dropped.
 template <int D>
 class TileCache {
  public:
   using Entry = std::shared_ptr<const Tile<D>>;
 
-  explicit TileCache(std::size_t max_bytes) : most_bytes_(max_bytes) {}
+  explicit TileCache(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
-  /// nullptr if the tile is not here.
+  /// Returns the tile, or nullptr if it is not in the cache.
   Entry find(int scale, const CellKey<D>& address) {
     const auto found = places_.find({scale, address});
     if (found == places_.end()) return nullptr;
@@ -27,14 +27,14 @@ class TileCache {
     return found->second->tile;
   }
 
-  /// Takes in a tile that is not here yet. One larger than the whole cache is not kept.
+  /// Adds a tile that is not in the cache yet. A tile that is larger than the whole cache is not kept.
   void insert(int scale, const CellKey<D>& address, Entry tile) {
     const std::size_t bytes = bytesOf(*tile);
-    if (bytes > most_bytes_) return;
+    if (bytes > max_bytes_) return;
     by_use_.push_front({{scale, address}, std::move(tile), bytes});
     places_[{scale, address}] = by_use_.begin();
     bytes_ += bytes;
-    while (bytes_ > most_bytes_) {
+    while (bytes_ > max_bytes_) {
       bytes_ -= by_use_.back().bytes;
       places_.erase(by_use_.back().address);
       by_use_.pop_back();
@@ -56,9 +56,9 @@ class TileCache {
     Entry tile;
     std::size_t bytes;
   };
-  std::size_t most_bytes_;
+  std::size_t max_bytes_;
   std::size_t bytes_ = 0;
-  std::list<Item> by_use_;  // the last used one in front
+  std::list<Item> by_use_;  // the most recently used tile comes first
   std::map<Address, typename std::list<Item>::iterator> places_;
 };
 

@@ -11,16 +11,16 @@
 #include <stdexcept>
 
 #include "io/gmap/columns.h"
-#include "io/gmap/finished_columns.h"
+#include "io/gmap/final_columns.h"
 
 namespace gaussmap::detail {
 namespace {
 
-constexpr std::uint64_t kMostExpansion = 64;          // of a tile by decompression; real ones grow two or three times
-constexpr std::uint64_t kMostExpansionFinished = 16;  // numbers that are packed already
-constexpr std::uint64_t kHasMoments = 1, kHasLabels = 2, kHasLogOdds = 4, kFinished = 8;
+constexpr std::uint64_t kMaxExpansion = 64;       // of a tile by decompression; real ones grow two or three times
+constexpr std::uint64_t kMaxFinalExpansion = 16;  // numbers that are packed already
+constexpr std::uint64_t kHasMoments = 1, kHasLabels = 2, kHasLogOdds = 4, kFinal = 8;
 
-/// The numbers in front of the columns, 8 bytes each.
+/// Returns the numbers in front of the columns, 8 bytes each.
 template <int D>
 std::vector<std::uint64_t> headerOf(const TileAddress<D>& address, const MapOptions& options, std::size_t cells,
                                     std::size_t gaussians, std::uint64_t flags) {
@@ -62,7 +62,7 @@ void checkPositiveDefinite(const Matrix<D>& cov) {
     throw std::runtime_error("a covariance that is not positive definite");
 }
 
-/// Calls body(row, column, slot) over the upper triangle.
+/// Calls body(row, column, slot) for the upper triangle of a matrix.
 template <int D, typename Body>
 void forTriangle(const Body& body) {
   int slot = 0;
@@ -72,9 +72,9 @@ void forTriangle(const Body& body) {
 
 /// Data as regular as a lattice of points are packed so tightly that decompress() would take them for a bomb: a
 /// skippable frame makes up for it.
-void fillUp(std::string& packed, std::size_t raw_size, std::uint64_t most_expansion) {
+void fillUp(std::string& packed, std::size_t raw_size, std::uint64_t max_expansion) {
   constexpr std::uint32_t kSkippable = 0x184D2A50;
-  const std::size_t least = raw_size / most_expansion + 1;
+  const std::size_t least = raw_size / max_expansion + 1;
   if (packed.size() >= least) return;
   ColumnWriter frame(packed);
   const std::size_t fill = least - packed.size();
@@ -83,7 +83,7 @@ void fillUp(std::string& packed, std::size_t raw_size, std::uint64_t most_expans
   packed.append(fill, '\0');
 }
 
-std::string compress(const std::string& raw, int level, std::uint64_t most_expansion) {
+std::string compress(const std::string& raw, int level, std::uint64_t max_expansion) {
   const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context(ZSTD_createCCtx(), ZSTD_freeCCtx);
   if (!context) throw std::bad_alloc();
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, level);
@@ -92,13 +92,13 @@ std::string compress(const std::string& raw, int level, std::uint64_t most_expan
   const std::size_t size = ZSTD_compress2(context.get(), packed.data(), packed.size(), raw.data(), raw.size());
   if (ZSTD_isError(size)) throw std::runtime_error(std::string("cannot be compressed: ") + ZSTD_getErrorName(size));
   packed.resize(size);
-  fillUp(packed, raw.size(), most_expansion);
+  fillUp(packed, raw.size(), max_expansion);
   return packed;
 }
 
 std::string decompress(std::string_view packed) {
   const unsigned long long size = ZSTD_getFrameContentSize(packed.data(), packed.size());
-  if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN || size > kMostExpansion * packed.size())
+  if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN || size > kMaxExpansion * packed.size())
     throw std::runtime_error("not a compressed tile");
   std::string raw(static_cast<std::size_t>(size), '\0');
   const std::size_t got = ZSTD_decompress(raw.data(), raw.size(), packed.data(), packed.size());
@@ -113,8 +113,8 @@ template <int D>
 std::string encodeTile(const Tile<D>& tile, const TileAddress<D>& address, const MapOptions& options, int level,
                        Precision precision) {
   const std::size_t cells = tile.keys.size(), gaussians = tile.gaussianCount();
-  const bool finished = precision == Precision::Finished;
-  const std::uint64_t flags = (finished               ? kFinished
+  const bool is_final = precision == Precision::Finished;
+  const std::uint64_t flags = (is_final               ? kFinal
                                : tile.moments.empty() ? 0
                                                       : kHasMoments) |
                               (tile.labels.empty() ? 0 : kHasLabels) | (tile.log_odds.empty() ? 0 : kHasLogOdds);
@@ -122,9 +122,9 @@ std::string encodeTile(const Tile<D>& tile, const TileAddress<D>& address, const
   ColumnWriter columns(raw);
   for (std::uint64_t number : headerOf<D>(address, options, cells, gaussians, flags))
     columns.write(1, 8, [&](std::size_t) { return number; });
-  if (finished) {
-    writeFinished<D>(raw, tile, address, options);
-    return compress(raw, level, kMostExpansionFinished);
+  if (is_final) {
+    writeFinalColumns<D>(raw, tile, address, options);
+    return compress(raw, level, kMaxFinalExpansion);
   }
   for (std::size_t axis = 0; axis < D; ++axis)
     columns.write(cells, 4,
@@ -148,7 +148,7 @@ std::string encodeTile(const Tile<D>& tile, const TileAddress<D>& address, const
   }
   if (flags & kHasLabels) columns.write(gaussians, 4, [&](std::size_t i) { return std::uint64_t{tile.labels[i]}; });
   if (flags & kHasLogOdds) columns.write(gaussians, 4, [&](std::size_t i) { return bitsOf(tile.log_odds[i]); });
-  return compress(raw, level, kMostExpansion);
+  return compress(raw, level, kMaxExpansion);
 }
 
 template <int D>
@@ -162,23 +162,23 @@ Tile<D> decodeTile(std::string_view bytes, const TileAddress<D>& address, const 
     throw std::runtime_error("belongs to another place or another map");
   const bool has_moments = flags & kHasMoments, has_labels = flags & kHasLabels, has_log_odds = flags & kHasLogOdds;
   constexpr std::uint64_t kNumbers = 1 + D + D * (D + 1) / 2;
-  constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
-  if ((flags & ~(kHasMoments | kHasLabels | kHasLogOdds | kFinished)) != 0)
+  constexpr std::uint64_t kMax = std::numeric_limits<std::uint32_t>::max();
+  if ((flags & ~(kHasMoments | kHasLabels | kHasLogOdds | kFinal)) != 0)
     throw std::runtime_error("holds what this version does not know");
-  if ((flags & kFinished) != 0) {
-    if (has_moments || cells == 0 || gaussians > kMost || raw.size() > kMostExpansionFinished * bytes.size())
+  if ((flags & kFinal) != 0) {
+    if (has_moments || cells == 0 || gaussians > kMax || raw.size() > kMaxFinalExpansion * bytes.size())
       throw std::runtime_error("its size does not fit its cells");
     const std::size_t begin = raw.size() - columns.left();
     try {
-      const Tile<D> tile = readFinished<D>(raw.data() + begin, columns.left(),
-                                           {cells, gaussians, has_labels, has_log_odds}, address, options);
+      const Tile<D> tile = readFinalColumns<D>(raw.data() + begin, columns.left(),
+                                               {cells, gaussians, has_labels, has_log_odds}, address, options);
       for (const Gaussian<D>& gaussian : tile.gaussians) checkPositiveDefinite<D>(gaussian.cov);
       return tile;
     } catch (const std::domain_error& error) {
       throw std::runtime_error(error.what());
     }
   }
-  if (cells == 0 || cells > kMost || gaussians < cells || gaussians > kMost || (has_moments && gaussians != cells) ||
+  if (cells == 0 || cells > kMax || gaussians < cells || gaussians > kMax || (has_moments && gaussians != cells) ||
       columns.left() !=
           cells * 4 * (D + 1) + gaussians * (8 * kNumbers + (has_labels ? 4 : 0) + (has_log_odds ? 4 : 0)))
     throw std::runtime_error("its size does not fit its cells");

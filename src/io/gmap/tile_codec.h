@@ -10,20 +10,21 @@
 
 namespace gaussmap::detail {
 
-/// The cells of one scale in one tile, in any order: what a row of the map file holds.
+/// The cells of one scale in one tile, in any order: the content of one row of the map file.
 template <int D>
 struct Tile {
   std::vector<CellKey<D>> keys;         ///< n
-  std::vector<std::uint32_t> counts;    ///< n Gaussians in each cell
+  std::vector<std::uint32_t> counts;    ///< n: number of Gaussians per cell
   std::vector<CellMoments<D>> moments;  ///< n, or empty
-  std::vector<Gaussian<D>> gaussians;   ///< m = sum of counts, or empty; mean about the centre of the cell
-  std::vector<std::uint32_t> labels;    ///< m ranks of the parent in the cell above, or empty
+  std::vector<Gaussian<D>> gaussians;   ///< m = sum of counts, or empty; means relative to the cell's centre
+  std::vector<std::uint32_t> labels;    ///< m: position of the parent within the parent cell, or empty
   std::vector<float> log_odds;          ///< m, or empty
 
   std::size_t gaussianCount() const { return moments.empty() ? gaussians.size() : moments.size(); }
 };
 
-/// What the bytes of a tile are checked against: a tile cannot be taken for another one's, or for another map's.
+/// The address of a tile. decodeTile() checks it, so that a tile cannot be mistaken for a tile of another place
+/// or another map.
 template <int D>
 struct TileAddress {
   int scale = 0;
@@ -32,14 +33,14 @@ struct TileAddress {
 };
 
 /// Columns, bytes of equal weight together, zstd with checksum; a skippable frame behind it where the data shrink more
-/// than 64 times (finished: 16 times). Little endian whatever the machine. Throws std::domain_error if a finished tile
-/// is asked for and a Gaussian is none (io/quantise.h).
+/// than 64 times (final map: 16 times). Little endian whatever the machine. Throws std::domain_error if a tile of a
+/// final map is asked for and a Gaussian is none (io/quantise.h).
 template <int D>
 std::string encodeTile(const Tile<D>& tile, const TileAddress<D>& address, const MapOptions& options, int level,
                        Precision precision = Precision::Exact);
 
 /// Throws std::runtime_error, saying what is wrong, unless the bytes are exactly what encodeTile makes of a tile at
-/// this address with these options. Allocates no more than 64 times the bytes given, twice; for a finished tile 256
+/// this address with these options. Allocates no more than 64 times the bytes given, twice; for one of a final map 256
 /// times.
 template <int D>
 Tile<D> decodeTile(std::string_view bytes, const TileAddress<D>& address, const MapOptions& options);

@@ -19,15 +19,15 @@ namespace {
 
 constexpr double kDegree = kPi / 180.0;
 constexpr double kFarthest = 1e9;  // of a pose [m]
-constexpr std::size_t kMostFaults = 1000;
+constexpr std::size_t kMaxFaults = 1000;
 constexpr double kSickNoReturn = 80.0, kSickLimit = 82.0;  // a SICK writes 81.83 and the like for no return [m]
 
-/// What is wrong with a line.
+/// What is wrong with a line of the log.
 struct BadLine : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Takes the words of a line one by one.
+/// Reads the words of a line one by one.
 class Words {
  public:
   explicit Words(std::string_view line) : words_(splitWords(line)) {}
@@ -49,7 +49,7 @@ class Words {
     if (!std::isfinite(value)) throw BadLine(std::string("the ") + what + " is not finite");
     return value;
   }
-  /// A count of words that follow.
+  /// Reads a number of words that must follow.
   std::size_t count(const char* what) {
     const std::string_view text = word(what);
     std::size_t value = 0;
@@ -86,12 +86,12 @@ void setBearings(LaserScan& scan, double first, double step) {
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) scan.bearings.push_back(first + static_cast<double>(i) * step);
 }
 
-/// The words behind FLASER.
+/// Reads the words after FLASER.
 LaserScan readFlaser(Words& words) {
   LaserScan scan;
   const std::size_t n = words.count("number of ranges");
   readRanges(words, n, scan);
-  if (words.left() > 9)  // two poses, time, host, time
+  if (words.left() > 9)  // at most two poses, time, host, time
     throw BadLine("there are " + std::to_string(words.left()) + " words behind the " + std::to_string(n) +
                   " ranges: the number of ranges is wrong, or two lines were joined");
   readPose(words, scan);
@@ -103,7 +103,7 @@ LaserScan readFlaser(Words& words) {
   return scan;
 }
 
-/// The words behind ROBOTLASER1.
+/// Reads the words after ROBOTLASER1.
 LaserScan readRobotLaser(Words& words) {
   LaserScan scan;
   words.word("type of the laser");
@@ -128,7 +128,7 @@ LaserScan readRobotLaser(Words& words) {
 }
 
 void note(CarmenLog& log, std::size_t line, const std::string& what) {
-  if (log.faults.size() < kMostFaults) {
+  if (log.faults.size() < kMaxFaults) {
     log.faults.push_back({line, what});
   } else {
     ++log.more_faults;

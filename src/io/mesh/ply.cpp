@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kFarthest = 1e70;  // [m], see checkMesh()
 
-/// The values of a text, one element a line.
+/// Reads the values of an ASCII body, one element per line.
 class AsciiValues {
  public:
   AsciiValues(const std::filesystem::path& path, const PlyHeader& header, std::string_view bytes)
@@ -32,13 +32,14 @@ class AsciiValues {
     throw FileError(path_, "line " + std::to_string(line_) + ": " + what);
   }
 
-  /// Could so many elements be in the rest? Each value has a digit, and all but the very last one something behind it.
+  /// Returns true if the rest of the file can hold these elements. Each value takes a digit, and a separator unless it
+  /// is the last value.
   bool mayHold(const PlyElement& element) const {
     std::size_t bytes = 0;
-    return !__builtin_mul_overflow(element.count, 2 * element.leastWords(), &bytes) &&
+    return !__builtin_mul_overflow(element.count, 2 * element.minWords(), &bytes) &&
            bytes <= static_cast<std::size_t>(end_ - place_) + 1;
   }
-  std::size_t mostOf(PlyType) const { return static_cast<std::size_t>(end_ - place_) / 2 + 1; }
+  std::size_t maxCount(PlyType) const { return static_cast<std::size_t>(end_ - place_) / 2 + 1; }
 
   void beginElement(const PlyElement& element, std::size_t i) {
     while (place_ != end_ && (isBlank(*place_) || *place_ == '\n')) line_ += *place_++ == '\n';
@@ -60,7 +61,7 @@ class AsciiValues {
     const std::string_view word = takeWord();
     if (!parseNumber(word, value)) fail(quote(word) + " is not a number");
     if (type == PlyType::Float32 && std::abs(value) <= double{std::numeric_limits<float>::max()})
-      return double{static_cast<float>(value)};  // as a binary file would have it
+      return double{static_cast<float>(value)};  // the same value as in a binary file
     return value;
   }
   std::int64_t whole(PlyType) {
@@ -92,7 +93,7 @@ class AsciiValues {
   std::size_t line_;
 };
 
-/// The values of a binary file.
+/// Reads the values of a binary body.
 class BinaryValues {
  public:
   BinaryValues(const std::filesystem::path& path, const PlyHeader& header, std::string_view bytes)
@@ -104,9 +105,9 @@ class BinaryValues {
 
   bool mayHold(const PlyElement& element) const {
     std::size_t bytes = 0;
-    return !__builtin_mul_overflow(element.count, element.leastSize(), &bytes) && bytes <= bytes_.size() - place_;
+    return !__builtin_mul_overflow(element.count, element.minSize(), &bytes) && bytes <= bytes_.size() - place_;
   }
-  std::size_t mostOf(PlyType type) const { return (bytes_.size() - place_) / sizeOf(type); }
+  std::size_t maxCount(PlyType type) const { return (bytes_.size() - place_) / sizeOf(type); }
 
   void beginElement(const PlyElement&, std::size_t) { element_ = place_; }
   void endElement(const PlyElement&) {}
@@ -138,7 +139,7 @@ class BinaryValues {
     fail("a whole number was expected");
   }
   void skip(PlyType type, std::size_t count) {
-    if (count > mostOf(type)) fail("the file is cut off inside this element");
+    if (count > maxCount(type)) fail("the file is cut off inside this element");
     place_ += count * sizeOf(type);
   }
 
@@ -158,7 +159,7 @@ class BinaryValues {
   const std::filesystem::path& path_;
   std::string_view bytes_;
   std::size_t place_;
-  std::size_t element_ = 0;  // where it begins
+  std::size_t element_ = 0;  // position of the current element [bytes]
   bool is_big_;
 };
 
@@ -229,7 +230,7 @@ class BodyParser {
   std::size_t length(const PlyProperty& list) {
     const std::int64_t length = values_.whole(list.count_type);
     if (length < 0) values_.fail("a list of " + std::to_string(length) + " entries");
-    if (static_cast<std::uint64_t>(length) > values_.mostOf(list.type))
+    if (static_cast<std::uint64_t>(length) > values_.maxCount(list.type))
       values_.fail("a list of " + std::to_string(length) + " entries does not fit into the rest of the file");
     return static_cast<std::size_t>(length);
   }

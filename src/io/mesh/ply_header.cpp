@@ -12,7 +12,7 @@
 namespace gaussmap::detail {
 namespace {
 
-// Far more than any header needs, far less than a scan of a large file that is none.
+// No header needs this much. The limit avoids a search through a large file that is not a PLY file.
 constexpr std::size_t kLongestHeader = std::size_t{1} << 20;
 
 constexpr std::array<std::pair<std::string_view, PlyType>, 16> kTypes = {{{"char", PlyType::Int8},
@@ -135,7 +135,7 @@ std::size_t sizeOf(PlyType type) {
   return kSizes[static_cast<std::size_t>(type)];
 }
 
-std::size_t PlyElement::leastSize() const {
+std::size_t PlyElement::minSize() const {
   std::size_t size = 0;
   for (const PlyProperty& property : properties) size += sizeOf(property.is_list ? property.count_type : property.type);
   return size;

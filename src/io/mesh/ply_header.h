@@ -19,20 +19,20 @@ inline bool isWhole(PlyType type) {
 
 struct PlyProperty {
   std::string name;
-  PlyType type = PlyType::Float32;  ///< of the value, or of each entry of a list
+  PlyType type = PlyType::Float32;  ///< type of the value, or of each entry of a list
   bool is_list = false;
-  PlyType count_type = PlyType::UInt8;  ///< of a list's length
+  PlyType count_type = PlyType::UInt8;  ///< type of a list's length
 };
 
 struct PlyElement {
   std::string name;
   std::size_t count = 0;
-  std::size_t line = 0;  ///< of the header
+  std::size_t line = 0;  ///< line of the header
   std::vector<PlyProperty> properties;
 
   /// Bytes, or words of a text, that the shortest such element has.
-  std::size_t leastSize() const;
-  std::size_t leastWords() const { return properties.size(); }
+  std::size_t minSize() const;
+  std::size_t minWords() const { return properties.size(); }
 };
 
 enum class PlyEncoding { Ascii, LittleEndian, BigEndian };
@@ -40,11 +40,11 @@ enum class PlyEncoding { Ascii, LittleEndian, BigEndian };
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::Ascii;
   std::vector<PlyElement> elements;  ///< in the order of the data
-  std::size_t data_offset = 0;       ///< bytes before the data
-  std::size_t data_line = 0;         ///< number of the first line of data, the file's first line is 1
+  std::size_t data_offset = 0;       ///< position of the data [bytes]
+  std::size_t data_line = 0;         ///< number of the first line of data; the first line of the file is 1
 };
 
-/// Throws FileError, with the line of the header.
+/// Reads the header at the start of a file. Throws FileError with the line that is wrong.
 PlyHeader parsePlyHeader(const std::filesystem::path& path, std::string_view bytes);
 
 }  // namespace gaussmap::detail

@@ -20,7 +20,8 @@ std::int32_t asIndex(double value) {
   return static_cast<std::int32_t>(value);
 }
 
-/// The place that means are about. A rotation would be a pose, which the cells of a map cannot have.
+/// Returns the origin that the means are relative to. Throws if the VIEWPOINT also rotates, because cells of a map
+/// cannot be rotated.
 Eigen::Vector3d originOf(const PcdHeader& header) {
   Eigen::Vector3d origin = header.viewpoint.translation;
   if (!origin.allFinite() || !(header.viewpoint.rotation.vec().norm() == 0.0))

@@ -11,7 +11,7 @@
 
 #include "core/number_text.h"
 #include "gaussmap/io/pcd/map_pcd.h"
-#include "map/link_cells.h"
+#include "map/child_links.h"
 #include "map/map_origin.h"
 #include "map/map_scale_builder.h"
 
@@ -20,7 +20,7 @@ using namespace detail;
 
 namespace {
 
-constexpr double kRounding = 1e-6;  // what floats may have done to an eigenvalue, as a part of the largest
+constexpr double kRounding = 1e-6;  // possible error of an eigenvalue after rounding to float, relative to the largest
 
 GaussianRecord toRecord(const GaussianMap<3>& map, std::size_t index, int scale, const Eigen::Vector3d& origin) {
   const CellKey<3>& key = map.scale(scale).keys[map.cellOf(index, scale)];
@@ -50,7 +50,7 @@ Matrix<3> positiveDefinite(const GaussianRecord& record) {
   return solver.eigenvectors() * lifted.asDiagonal() * solver.eigenvectors().transpose();
 }
 
-/// The shortest decimal that the float stands for: 0.1, not 0.100000001490116.
+/// Returns the shortest decimal that rounds to this float: 0.1, not 0.100000001490116.
 double asWritten(float value) {
   char text[32];
   const char* const end = std::to_chars(text, text + sizeof text, value).ptr;
@@ -64,7 +64,7 @@ MapOptions optionsOf(const std::map<int, float>& sides) {
   const int finest = sides.begin()->first;
   options.resolution = asWritten(sides.begin()->second);
   options.scales = static_cast<int>(sides.size());
-  // The file does not tell the noise floor: the usual one, or more where the coarsest cells ask for it (Grid).
+  // The file does not store the noise floor. This is the default, or more if the coarsest cells need it (see Grid).
   options.noise = std::max(options.resolution / 20.0, 1.01e-7 * static_cast<double>(sides.rbegin()->second));
   if (sides.size() > 1) {
     const double ratio =
@@ -81,12 +81,14 @@ MapOptions optionsOf(const std::map<int, float>& sides) {
 }
 
 struct CellGroup {
-  std::vector<Gaussian<3>> gaussians;  // means about the centre of the cell
+  std::vector<Gaussian<3>> gaussians;  // means relative to the centre of the cell
   std::vector<float> log_odds;
 };
 using CellGroups = std::map<CellKey<3>, CellGroup>;
 
-/// The nearest cluster of the cell above, means about the centre of the parent.
+/// Returns the index of the parent: of the clusters `among` in the parent cell, the one with the smallest KL divergence
+/// from the child. The means of the clusters are relative to the centre of the parent cell. The mean of the child is
+/// relative to the centre of its own cell, which is at `centre_in_parent`.
 std::size_t nearestParent(Gaussian<3> child, const Vector<3>& centre_in_parent,
                           const std::vector<Gaussian<3>>& clusters, IndexRange among) {
   child.mean += centre_in_parent;
@@ -167,7 +169,7 @@ GaussianMap<3> fromRecords(const GaussianRecords& all) {
     scale = builder.take();
     if (s == 0) continue;
     MapScale<3>& finer = scales[static_cast<std::size_t>(s) - 1];
-    scale.first_child = linkCells<3>(finer.keys, scale.keys, grid, s);
+    scale.first_child = childLinks<3>(finer.keys, scale.keys, grid, s);
     for (std::size_t cell = 0; cell < scale.keys.size(); ++cell) {
       const IndexRange clusters = gaussiansOf(scale, cell);
       for (std::size_t child = scale.first_child[cell]; child < scale.first_child[cell + 1]; ++child) {

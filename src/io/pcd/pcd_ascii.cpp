@@ -30,7 +30,7 @@ class AsciiParser {
     throw FileError(path_, "line " + std::to_string(line_) + ": " + what);
   }
 
-  // False at the end of the file.
+  // Returns false at the end of the file.
   bool skipBlankLines() {
     while (place_ != end_ && (isBlank(*place_) || *place_ == '\n')) line_ += *place_++ == '\n';
     return place_ != end_;
@@ -64,7 +64,7 @@ class AsciiParser {
     std::from_chars_result result{};
     if (single) result = readNumber(place_, end_, narrow);
     const bool is_narrow = single && result.ec != std::errc::result_out_of_range;
-    // Writers of doubles leave numbers like 1e-300 where the header promises floats.
+    // Some programs write doubles like 1e-300 although the header declares floats.
     if (!is_narrow) result = readNumber(place_, end_, value);
     const bool overflows = single && !is_narrow && std::abs(value) > double{std::numeric_limits<float>::max()};
     if (overflows || result.ec == std::errc::result_out_of_range) failAtWord("does not fit the field's F 4 or F 8");

@@ -9,10 +9,10 @@
 namespace gaussmap::detail {
 namespace {
 
-// DATA binary_compressed starts with two 32-bit numbers: the bytes behind them, and what they expand to.
+// DATA binary_compressed starts with two 32-bit numbers: the compressed size and the expanded size in bytes.
 constexpr std::size_t kSizesBytes = 8;
 // The best that LZF can do: a back reference of 3 bytes stands for 264.
-constexpr std::size_t kMostExpansion = 264 / 3;
+constexpr std::size_t kMaxExpansion = 264 / 3;
 
 struct CompressedSizes {
   std::uint32_t compressed = 0;
@@ -42,7 +42,7 @@ std::string claim(std::size_t points, std::size_t each, const std::string& what)
 }
 
 void checkAscii(const std::filesystem::path& path, const PcdHeader& header, std::string_view data) {
-  // A number takes at least a digit and what separates it from the next.
+  // A number takes at least two bytes: one digit and one separator.
   std::size_t numbers = 0;
   if (__builtin_mul_overflow(header.points, header.columns, &numbers) || numbers > (data.size() + 1) / 2)
     throw FileError(path, "the header claims " + claim(header.points, header.columns, "numbers each") + ", but only " +
@@ -77,7 +77,7 @@ void checkCompressed(const std::filesystem::path& path, const PcdHeader& header,
     fail(path, header.data_offset + 4,
          "the data expand to " + std::to_string(sizes.expanded) + " bytes, but the header claims " +
              claim(header.points, header.record_size, "bytes"));
-  if (sizes.expanded > kMostExpansion * sizes.compressed)
+  if (sizes.expanded > kMaxExpansion * sizes.compressed)
     fail(path, header.data_offset + 4,
          std::to_string(sizes.compressed) + " compressed bytes cannot expand to " + std::to_string(sizes.expanded) +
              ": the file is damaged");
@@ -101,7 +101,7 @@ PcdExpanded::PcdExpanded(const std::filesystem::path& path, const PcdHeader& hea
   if (header.points == 0) return;
   const CompressedSizes sizes = sizesOf(data);
   has_padding_ = sizes.expanded == header.points * header.record_size;
-  bytes_.reset(new char[sizes.expanded]);  // not zeroed: every byte is about to be written
+  bytes_.reset(new char[sizes.expanded]);  // not zeroed, because every byte is written below
   const unsigned expanded = lzf_decompress(data.data() + kSizesBytes, sizes.compressed, bytes_.get(), sizes.expanded);
   if (expanded != sizes.expanded)
     fail(path, header.data_offset + kSizesBytes,

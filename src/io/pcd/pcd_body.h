@@ -9,34 +9,34 @@
 
 #include "gaussmap/io/pcd/pcd_reader.h"
 
-// The part of a PCD file behind its header. `data` are always the bytes from header.data_offset to the file's end.
+// The body of a PCD file, which follows the header. `data` always holds the bytes from header.data_offset to the end.
 namespace gaussmap::detail {
 
-/// Refuses data that cannot hold the points the header claims, without reading them. After this, points * record_size
-/// does not overflow and is within a constant factor of the file's size. Throws FileError.
+/// Checks that the data can hold the points that the header claims. The points are not read. After this check, the
+/// product points * record_size does not overflow and is within a constant factor of the file's size. Throws FileError.
 void checkPcdBody(const std::filesystem::path& path, const PcdHeader& header, std::string_view data);
 
-/// A column of an ascii body to be read.
+/// A column to be read from an ASCII body.
 struct AsciiColumn {
   std::size_t column;   ///< in [0, header.columns)
-  bool single = false;  ///< round to float, as the header's F 4 says
+  bool single = false;  ///< values are rounded to float, because the header says F 4
   std::vector<double> values = {};
 };
 
-/// Fills the columns, which must be in ascending order, in one pass over the text. Throws FileError with the line.
+/// Fills the columns in one pass over the text. They must be in ascending order. Throws FileError with the line.
 void parsePcdAscii(const std::filesystem::path& path, const PcdHeader& header, std::string_view data,
                    std::vector<AsciiColumn>& columns);
 
-/// Where the elements of a field are in a body of DATA binary_compressed once it is expanded.
+/// Position of the elements of a field in a binary body; for DATA binary_compressed, in the expanded body.
 struct PcdStride {
-  std::size_t offset;  ///< of the first point's first element [bytes]
-  std::size_t step;    ///< from point to point [bytes]
+  std::size_t offset;  ///< offset of the first element of the first point [bytes]
+  std::size_t step;    ///< distance from point to point [bytes]
 };
 
-/// The expanded body: field after field, each with all its points.
+/// The expanded body of DATA binary_compressed. It stores all points of the first field, then all points of the next.
 class PcdExpanded {
  public:
-  /// Throws FileError if the data do not expand to exactly the claimed size.
+  /// Expands the data. Throws FileError if they do not expand to exactly the claimed size.
   PcdExpanded(const std::filesystem::path& path, const PcdHeader& header, std::string_view data);
   const char* bytes() const { return bytes_.get(); }
   PcdStride strideOf(const PcdField& field) const;
@@ -44,7 +44,7 @@ class PcdExpanded {
  private:
   const PcdHeader& header_;
   std::unique_ptr<char[]> bytes_;
-  bool has_padding_ = true;  // PCL leaves fields named _ out of compressed data, other writers may not
+  bool has_padding_ = true;  // true: the data hold the fields named _, which PCL leaves out of compressed data
 };
 
 }  // namespace gaussmap::detail

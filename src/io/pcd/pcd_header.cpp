@@ -14,7 +14,7 @@ namespace {
 enum Keyword { kVersion, kFields, kSize, kType, kCount, kWidth, kHeight, kViewpoint, kPoints, kData, kKeywords };
 constexpr std::array<std::string_view, kKeywords> kNames = {"VERSION", "FIELDS", "SIZE",      "TYPE",   "COUNT",
                                                             "WIDTH",   "HEIGHT", "VIEWPOINT", "POINTS", "DATA"};
-// Far more than any header needs, far less than a scan of a large file that is none.
+// No header needs this much. The limit avoids a search through a large file that is not a PCD file.
 constexpr std::size_t kLongestHeader = std::size_t{1} << 20;
 
 struct Line {
@@ -77,7 +77,7 @@ class HeaderParser {
   }
 
   Keyword keywordOf(std::string_view word, std::size_t line) const {
-    if (word == "COLUMNS") return kFields;  // its name before 0.5
+    if (word == "COLUMNS") return kFields;  // the name of FIELDS before version 0.5
     const auto found = std::find(kNames.begin(), kNames.end(), word);
     if (found == kNames.end())
       fail(line, quote(word) + " does not belong into a PCD header (VERSION, FIELDS, SIZE ...): is this a PCD file?");
@@ -128,7 +128,7 @@ class HeaderParser {
       field.name = name;
       header_.fields.push_back(std::move(field));
     }
-    // Before 0.6 both could be left out: everything was a float.
+    // Before version 0.6 both lines were optional, and every field was a float.
     if (has(kSize) != has(kType)) failWithout(has(kSize) ? kType : kSize);
   }
 

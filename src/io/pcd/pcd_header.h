@@ -8,8 +8,8 @@
 
 namespace gaussmap::detail {
 
-/// Reads the header at the start of a file. What it returns is consistent in itself: x y z are there, sizes and
-/// offsets do not overflow, POINTS = WIDTH * HEIGHT. Nothing is said about the data. Throws FileError.
+/// Reads the header at the start of a file. The result is consistent: the fields x, y and z exist, sizes and offsets do
+/// not overflow, and POINTS = WIDTH * HEIGHT. The data are not checked. Throws FileError if the header is invalid.
 PcdHeader parsePcdHeader(const std::filesystem::path& path, std::string_view bytes);
 
 }  // namespace gaussmap::detail

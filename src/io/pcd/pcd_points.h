@@ -10,9 +10,9 @@
 
 namespace gaussmap::detail {
 
-/// The way back from writePcd(): reads point after point to where `fields` point, memory of the caller's that may be
-/// written, and calls body(i) after each. Throws FileError, saying that the file is no `what`, unless it has all these
-/// fields with the same types, sizes and counts.
+/// Reads points, as the inverse of writePcd(). It copies each point to the memory that `fields` point to, then calls
+/// body(i). This memory belongs to the caller and must be writable. Throws FileError unless the file has all these
+/// fields with the same types, sizes and counts; the message uses `what` as the name of the expected content.
 void readPoints(const PcdReader& reader, const std::vector<PcdOutput>& fields, const std::string& what,
                 const std::function<void(std::size_t)>& body);
 

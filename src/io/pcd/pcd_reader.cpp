@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
 
-/// One scalar a point somewhere in memory, not aligned.
+/// One scalar per point, anywhere in memory and not aligned.
 struct Scalars {
   const char* first = nullptr;
   std::size_t step = 0;  // bytes from point to point
@@ -30,7 +30,7 @@ struct Scalars {
   std::size_t size = 8;
 };
 
-/// Calls body with a value of the C++ type for such scalars; false if there is none.
+/// Calls body with a value of the C++ type of such scalars. Returns false if there is no such type.
 template <typename Body>
 bool withType(char type, std::size_t size, const Body& body) {
   const auto is = [type, size](char t, std::size_t s) { return type == t && size == s; };
@@ -47,7 +47,7 @@ bool withType(char type, std::size_t size, const Body& body) {
   return false;
 }
 
-/// False if there is no such scalar type.
+/// Converts scalars to doubles. Returns false if their type is unknown.
 bool widen(const Scalars& scalars, std::size_t begin, std::size_t count, double* values) {
   return withType(scalars.type, scalars.size, [&](auto value) {
     const char* place = scalars.first + begin * scalars.step;
@@ -58,7 +58,8 @@ bool widen(const Scalars& scalars, std::size_t begin, std::size_t count, double*
   });
 }
 
-/// A number in another type. What an integer cannot hold becomes the nearest it can: a cast would be undefined.
+/// Converts a number to T. If an integer type cannot hold the number, the result is the nearest limit of the type (NaN:
+/// the minimum), because a cast would be undefined behaviour.
 template <typename T>
 T rounded(double number) {
   if constexpr (std::is_integral_v<T>) {
@@ -69,7 +70,7 @@ T rounded(double number) {
   return static_cast<T>(number);
 }
 
-/// Writes one element of a field of every point into records of DATA binary.
+/// Writes one element of a field, for every point, into records of DATA binary.
 void narrow(const std::vector<double>& values, const PcdField& field, std::size_t element, std::size_t record,
             char* records) {
   withType(field.type, field.size, [&](auto value) {
@@ -104,7 +105,7 @@ struct PcdReader::Body {
 
   std::shared_ptr<const MappedFile> file;
   std::string_view data;
-  // Filled by the first read: where x, y and z are, and the memory that holds them if it is not the file's.
+  // The first read sets the positions of x, y and z, and the memory that holds them if it is not that of the file.
   std::mutex mutex;
   std::atomic<bool> loaded{false};
   std::array<Scalars, 3> axes;
@@ -112,7 +113,7 @@ struct PcdReader::Body {
   std::vector<AsciiColumn> parsed;
 
   void load(const std::filesystem::path& path, const PcdHeader& header) {
-    if (header.points == 0) return;  // then offsets may point anywhere
+    if (header.points == 0) return;  // then the offsets can lie outside the data
     switch (header.encoding) {
       case PcdEncoding::Ascii:
         return loadAscii(path, header);
@@ -145,7 +146,7 @@ struct PcdReader::Body {
     }
   }
 
-  // Of the expanded fields only x, y and z stay.
+  // Keeps only x, y and z of the expanded fields.
   void loadCompressed(const std::filesystem::path& path, const PcdHeader& header) {
     const PcdExpanded all(path, header, data);
     std::size_t bytes = 0;
@@ -283,7 +284,7 @@ std::vector<char> PcdReader::records() const {
 }
 
 std::uint64_t PcdReader::fingerprint() const {
-  // Spread over the whole file, because organised clouds start with rows of NaN.
+  // The samples are spread over the whole file, because organised clouds can start with rows of NaN.
   constexpr std::size_t kSamples = 16;
   constexpr std::size_t kSampleBytes = 256;
   constexpr std::uint64_t kPrime = 0x100000001B3ull;  // FNV-1a

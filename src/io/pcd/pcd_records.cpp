@@ -20,7 +20,7 @@ const PcdField* findField(const PcdRecords& records, const std::string& name) {
   return found == records.fields.end() ? nullptr : &*found;
 }
 
-/// Three fields that make a vector of floats or doubles.
+/// Three fields that form a vector of floats or doubles.
 class VectorField {
  public:
   VectorField(PcdRecords& records, const std::array<std::string, 3>& names) : records_(records) {
@@ -71,7 +71,7 @@ bool sameFields(const std::vector<PcdField>& a, const std::vector<PcdField>& b) 
   });
 }
 
-/// Padding is left out.
+/// Returns the fields without padding.
 std::vector<PcdOutput> outputsOf(const std::vector<PcdField>& fields, const char* bytes, std::size_t record_size) {
   std::vector<PcdOutput> outputs;
   for (const PcdField& field : fields)

@@ -20,7 +20,7 @@ using namespace detail;
 namespace {
 
 constexpr std::size_t kBytesAtOnce = std::size_t{1} << 20;
-constexpr std::size_t kMaxPoints = 0xFFFFFFFFu;  // WIDTH is read into 32 bits by everybody
+constexpr std::size_t kMaxPoints = 0xFFFFFFFFu;  // readers such as PCL store WIDTH in 32 bits
 
 std::string header(std::size_t width, std::size_t height, const std::vector<PcdOutput>& fields, const Pose& viewpoint) {
   std::ostringstream text;

@@ -24,7 +24,7 @@ struct Record {
   std::uint32_t scale, hits, misses, first_hit, last_hit, deleted_after;
 };
 
-/// Every field of a record, for writing and for reading.
+/// Returns every field of a record. It is used for writing and for reading.
 std::vector<PcdOutput> fieldsOf(const Record& r) {
   constexpr std::size_t kStride = sizeof(Record);
   return {pcdOutput("x", &r.mean[0], 1, kStride),
@@ -89,15 +89,15 @@ RemovedCluster<3> fromRecord(const Record& record) {
   return removed;
 }
 
-/// Could points of a cell have such sums? Offsets have at most 15 bits and a sign, see CellMoments.
+/// Returns true if points of a cell can have such moments. An offset has at most 15 bits and a sign, see CellMoments.
 bool isPossible(const CellMoments<3>& moments) {
-  constexpr std::int64_t kMostOffset = kStepsPerCell / 2;
+  constexpr std::int64_t kMaxOffset = kStepsPerCell / 2;
   if (moments.count < 0 || moments.count >= std::int64_t{1} << 33) return false;
   const auto isWithin = [](std::int64_t value, std::int64_t most) { return value >= -most && value <= most; };
   for (const std::int64_t sum : moments.sum)
-    if (!isWithin(sum, moments.count * kMostOffset)) return false;
+    if (!isWithin(sum, moments.count * kMaxOffset)) return false;
   for (const std::int64_t product : moments.product)
-    if (!isWithin(product, moments.count * (kMostOffset * kMostOffset))) return false;
+    if (!isWithin(product, moments.count * (kMaxOffset * kMaxOffset))) return false;
   return moments.product[0] >= 0 && moments.product[3] >= 0 && moments.product[5] >= 0;
 }
 

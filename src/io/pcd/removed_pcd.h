@@ -9,13 +9,16 @@
 
 namespace gaussmap::detail {
 
-/// Writes deleted clusters as a PCD file, so that a deletion can be looked at, explained and undone: x y z (doubles,
-/// map frame) covariance[6] weight scale cell_x cell_y cell_z log_odds hits misses first_hit last_hit deleted_after
-/// (numbers of scans, from 0) and, for clusters of exact sums, count sum[3] product[6] (CellMoments).
-/// Throws FileError if it cannot be written.
+/// Writes deleted clusters as a PCD file, so that a user can inspect, explain and undo a deletion.
+///
+/// Fields: x y z (doubles, map frame) covariance[6] weight scale cell_x cell_y cell_z log_odds hits misses first_hit
+/// last_hit deleted_after, then count sum[3] product[6]. first_hit, last_hit and deleted_after are numbers of scans,
+/// counted from 0. The last three fields are the CellMoments; they are 0 if the cluster has no exact moments. Throws
+/// FileError if the file cannot be written.
 void writeRemoved(const std::filesystem::path& path, const std::vector<RemovedCluster<3>>& removed);
 
-/// Reads what writeRemoved wrote. Throws FileError if the file is no such cloud or a value is none.
+/// Reads a file of writeRemoved(). Throws FileError if a field is missing or has the wrong type, or if a value is
+/// impossible or not finite.
 std::vector<RemovedCluster<3>> readRemoved(const std::filesystem::path& path);
 
 }  // namespace gaussmap::detail

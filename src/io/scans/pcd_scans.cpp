@@ -17,14 +17,14 @@ using namespace detail;
 namespace {
 
 // Beyond, files are opened again when they are read: each open one takes a memory map and a few kilobytes.
-constexpr std::size_t kMostOpen = 1024;
+constexpr std::size_t kMaxOpen = 1024;
 
 std::vector<std::filesystem::path> scansIn(const std::filesystem::path& directory) {
   std::vector<std::filesystem::path> scans;
   std::error_code error;
   std::filesystem::directory_iterator entry(directory, error);
   for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
-    // A link to nowhere or a pipe stays in the list: its reader says what is wrong with it.
+    // A broken link or a pipe stays in the list: the reader reports what is wrong with it.
     std::error_code ignored;
     if (isScanName(entry->path().filename()) && !entry->is_directory(ignored)) scans.push_back(entry->path());
   }
@@ -35,7 +35,8 @@ std::vector<std::filesystem::path> scansIn(const std::filesystem::path& director
   return scans;
 }
 
-/// A field element as the interface names it.
+/// Returns the name of a field element in the interface ScanReader: "intensity", or "normal[0]" if the field
+/// has several elements.
 std::string valueName(const PcdField& field, std::size_t element) {
   return field.count == 1 ? field.name : field.name + "[" + std::to_string(element) + "]";
 }
@@ -81,7 +82,7 @@ PcdReader openScan(const std::filesystem::path& path) {
   return reader;
 }
 
-/// A directory and a file in it, for example.
+/// Warns if a scan is given more than once, for example as a file and by its directory.
 void warnOfScansGivenTwice(const std::vector<std::filesystem::path>& paths, std::vector<std::string>& warnings) {
   std::set<std::filesystem::path> seen;
   for (const std::filesystem::path& path : paths) {
@@ -98,7 +99,7 @@ PcdScans::PcdScans(std::vector<PcdScan> scans, ScanFrame frame, std::vector<PcdR
     : scans_(std::move(scans)), opened_(std::move(opened)), frame_(frame) {
   for (std::size_t i = opened_.size(); i < scans_.size(); ++i) {
     PcdReader reader(scans_[i].path);
-    if (i < kMostOpen) opened_.push_back(std::move(reader));
+    if (i < kMaxOpen) opened_.push_back(std::move(reader));
   }
 }
 
@@ -146,7 +147,7 @@ FoundScans findScans(const std::vector<std::filesystem::path>& inputs, const std
   for (const std::filesystem::path& path : paths) {
     PcdReader reader = openScan(path);
     checked.push_back(scanPose(reader));
-    if (opened.size() < kMostOpen) opened.push_back(std::move(reader));
+    if (opened.size() < kMaxOpen) opened.push_back(std::move(reader));
   }
   if (!poses.empty()) {
     const std::vector<Pose> given = posesForScans(readPoseFile(poses), paths);

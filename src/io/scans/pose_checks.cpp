@@ -7,7 +7,7 @@
 namespace gaussmap::detail {
 namespace {
 
-// Earth-centred coordinates end at 1e7 m: what is further away is no position in metres.
+// Earth-centred coordinates are below 1e7 m, so a position beyond this is not in metres.
 constexpr double kFarthest = 1e8;
 constexpr const char* kWayOut =
     "Give each scan its pose in the VIEWPOINT of its header or with --poses FILE (TUM or KITTI), or say --frame map if "
@@ -35,7 +35,7 @@ ScanPoses scansAt(const Pose& pose, const std::vector<ScanPose>& scans) {
   return found;
 }
 
-/// The same cloud twice may well have the same pose.
+/// Returns true if the scans do not all hold the same cloud. The same cloud may have the same pose.
 bool cloudsDiffer(const ScanPoses& scans) {
   return std::any_of(scans.begin(), scans.end(),
                      [&scans](const ScanPose* scan) { return scan->fingerprint != scans.front()->fingerprint; });

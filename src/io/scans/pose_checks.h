@@ -14,20 +14,23 @@ namespace gaussmap::detail {
 /// Input of the pose checks for one scan; small enough to keep for all scans.
 struct ScanPose {
   std::filesystem::path path;
-  Pose pose;                      ///< as given, the quaternion not normalised yet
+  Pose pose;                      ///< as given, with a quaternion that is not normalised
   std::uint64_t fingerprint = 0;  ///< PcdReader::fingerprint()
 };
 
-/// The pose in the scan's own header; for a pose from elsewhere replace `pose`. Reads a few kilobytes of the file.
+/// Returns the pose in the header of the scan; if the pose comes from elsewhere, the caller replaces `pose`. Reads a
+/// few kilobytes of the file.
 ScanPose scanPose(const PcdReader& reader);
 
 struct PoseDiagnosis {
-  std::vector<std::string> warnings;  ///< one sentence or two each, with file names and the way out
+  std::vector<std::string> warnings;  ///< one or two sentences each, with file names and what to do
 };
 
-/// Checks the poses of all scans before a map is built of them. Throws FileError naming the scan if a pose cannot be
-/// used, see poseFault(). Warns if scans that differ stand at one and the same pose, all of them or all those without
-/// a pose of their own (the identity), and of translations beyond 1e8 m.
+/// Checks the poses of all scans before a map is built from them. Throws FileError with the name of the scan if a pose
+/// cannot be used, see poseFault().
+///
+/// Warns if different clouds have the same pose: either all scans, or those scans whose pose is the identity because
+/// they have no pose of their own. Warns of translations beyond 1e8 m.
 PoseDiagnosis diagnosePoses(const std::vector<ScanPose>& scans);
 
 }  // namespace gaussmap::detail

@@ -51,7 +51,7 @@ class PoseFileParser {
   }
 
   PoseFile::Entry parseLine(const std::vector<std::string_view>& words) {
-    // From the right, because a name may contain blanks.
+    // Numbers are read from the right, because a name may contain blanks.
     std::vector<double> numbers(words.size());
     std::size_t name_words = words.size();
     while (name_words > 0 && parseNumber(words[name_words - 1], numbers[name_words - 1])) --name_words;
@@ -77,7 +77,7 @@ class PoseFileParser {
     const std::size_t numbers = words.size() - name_words;
     if (name_words == 0 && numbers == 1 + kTumNumbers) return Layout::Tum;
     if (name_words == 0 && numbers == kKittiNumbers) return Layout::Kitti;
-    if (name_words == 0 && numbers == 1 + kKittiNumbers) return Layout::NameKitti;  // scans named by number
+    if (name_words == 0 && numbers == 1 + kKittiNumbers) return Layout::NameKitti;  // the scans' names are numbers
     if (name_words > 0 && numbers == kTumNumbers) return Layout::NameTum;
     if (name_words > 0 && numbers == kKittiNumbers) return Layout::NameKitti;
     std::string what = std::to_string(words.size()) + " words";
@@ -113,7 +113,7 @@ class PoseFileParser {
   }
 
   void requireDifferentNames(const PoseFile& file) {
-    // Without folders, because scans are looked up without theirs.
+    // Names are compared without folders, because scans are looked up without folders.
     std::unordered_map<std::string, std::size_t> lines;
     for (const PoseFile::Entry& entry : file.entries) {
       const auto [first, is_new] = lines.emplace(fileName(entry), entry.line);
@@ -128,7 +128,7 @@ class PoseFileParser {
   Layout layout_ = Layout::Unknown;
 };
 
-/// Entries by the names they carry.
+/// Finds the entry of a scan by its name.
 class NameIndex {
  public:
   explicit NameIndex(const PoseFile& file) {

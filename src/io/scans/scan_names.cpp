@@ -11,7 +11,7 @@ bool isDigit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// Takes the digits at the start of `rest`, without leading zeros: then the longer is the larger.
+/// Takes the digits at the start of `rest` and drops leading zeros. Of two such numbers, the longer one is larger.
 std::string_view takeNumber(std::string_view& rest) {
   std::size_t end = 0;
   while (end < rest.size() && isDigit(rest[end])) ++end;
@@ -43,7 +43,7 @@ bool naturalLess(const std::string& a, const std::string& b) {
     }
   }
   if (rest_a.empty() != rest_b.empty()) return rest_a.empty();
-  return a < b;  // 2 and 02 differ somehow
+  return a < b;  // names like 2 and 02, which are equal as numbers
 }
 
 }  // namespace gaussmap::detail

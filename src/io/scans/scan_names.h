@@ -6,10 +6,11 @@
 
 namespace gaussmap::detail {
 
-/// True if listScans() takes a file of this name in a directory for a scan.
+/// Returns true if listScans() treats a file with this name in a directory as a scan.
 bool isScanName(const std::filesystem::path& name);
 
-/// True if a comes before b as people count: numbers in names by their value, scan2 before scan10.
+/// Returns true if a comes before b in natural order: numbers in names are compared by value, for example
+/// scan2 before scan10.
 bool naturalLess(const std::string& a, const std::string& b);
 
 }  // namespace gaussmap::detail

@@ -12,7 +12,7 @@
 
 namespace gaussmap::detail {
 
-/// The cells of a finished map in the form that visitVisible() takes.
+/// The cells of a complete map in the form that visitVisible() takes.
 struct MapCells {
   const GaussianMap<3>& map;
 
@@ -29,7 +29,7 @@ struct MapCells {
   }
 };
 
-/// The finest cells of a finished map in the form that object_rules.h takes.
+/// The finest cells of a complete map in the form that object_rules.h takes.
 struct FinestMapCells {
   using Index = std::size_t;
   static constexpr int kDimensions = 3;

@@ -11,10 +11,10 @@
 
 #include "gaussmap/map/grid.h"
 #include "gaussmap/sensor/visibility.h"
-#include "map/near_cells.h"
+#include "map/neighbour_keys.h"
 #include "mapping/moving/surface.h"
 
-// The rules for moving objects, for a finished map (MovingPoints) and for a map that grows (OnlineMapper).
+// The rules for moving objects, for a complete map (MovingPoints) and for a map that grows (OnlineMapper).
 //
 // `cells` gives the finest cells of a map, each named by an Index below slots(): kDimensions, side() [m], key(cell),
 // find(key) (nullopt if there is no such cell), evidence(cell), mean(cell) of its points about the cell's centre [m].

@@ -11,7 +11,7 @@
 
 namespace gaussmap::detail {
 void checkOptions(const SharedCellOptions& options, double resolution) {
-  require(options.reach >= 0.0 && options.reach <= kMostCells * resolution, "reach of a surface", options.reach,
+  require(options.reach >= 0.0 && options.reach <= kMaxCells * resolution, "reach of a surface", options.reach,
           "must be 0 to 1000 cells");
   require(options.flatness >= 0.0, "flatness", options.flatness, "must not be negative");
   require(options.noise >= 0.0, "noise", options.noise, "must not be negative");

@@ -39,9 +39,9 @@ class SurfaceSums {
 
   /// The surface that the points lie on, if it is flat: its standard deviation across is at most `flatness` [m].
   std::optional<Surface<D>> surface(double flatness) const {
-    constexpr double kFewest = 10.0;  // points that make a surface
-    constexpr double kExtent = 0.05;  // it has a standard deviation of at least this on its second axis [m]
-    if (n_ < kFewest) return std::nullopt;
+    constexpr double kMinPoints = 10.0;  // points that make a surface
+    constexpr double kExtent = 0.05;     // it has a standard deviation of at least this on its second axis [m]
+    if (n_ < kMinPoints) return std::nullopt;
     const Vector<D> mean = sum_ / n_;
     const Eigen::Matrix<double, D, D> spread = product_ / n_ - mean * mean.transpose();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, D, D>> axes(spread);

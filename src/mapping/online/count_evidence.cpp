@@ -61,9 +61,9 @@ struct VisibleCells {
   }
 };
 
-/// B of [1]: how many pixels the ball around a cell may cover, at most kMost.
+/// B of [1]: how many pixels the ball around a cell may cover, at most kMax.
 int samplesFor(const Projection& projection, double range, double side) {
-  constexpr double kMost = 100.0;
+  constexpr double kMax = 100.0;
   double pixel = 0.0;  // its area on the unit sphere, or on the plane at z = 1
   if (const auto* lidar = std::get_if<SphericalProjection>(&projection)) {
     const double rows = double(lidar->row_borders.size()) - 1.0;
@@ -73,7 +73,7 @@ int samplesFor(const Projection& projection, double range, double side) {
     pixel = 1.0 / (camera.fx * camera.fy);
   }
   const double count = 3.0 * kPi / (4.0 * pixel) * std::pow(side / range, 2);
-  return static_cast<int>(std::clamp(std::ceil(count), 1.0, kMost));
+  return static_cast<int>(std::clamp(std::ceil(count), 1.0, kMax));
 }
 
 template <int D>

@@ -13,9 +13,9 @@ namespace {
 
 /// d(p, w) of [2], the factor of each cluster computed when it is first asked for.
 template <int D>
-class Nearest {
+class NearestCluster {
  public:
-  explicit Nearest(OnlineClusters<D>& clusters) : clusters_(clusters), factors_(clusters.size()) {}
+  explicit NearestCluster(OnlineClusters<D>& clusters) : clusters_(clusters), factors_(clusters.size()) {}
 
   std::size_t operator()(const Vector<D>& point) {
     if (clusters_.size() == 1) return 0;
@@ -68,7 +68,7 @@ void linkUpwards(OnlineCells<D>& cells, std::uint32_t finest) {
     Gaussian<D> moved = below.gaussian;
     moved.mean += cells.grid().centreInParent(cells.cell(child, scale - 1).key, scale - 1);
     if (!clusters.empty()) {
-      below.parent = static_cast<std::uint32_t>(Nearest<D>(clusters)(moved.mean));
+      below.parent = static_cast<std::uint32_t>(NearestCluster<D>(clusters)(moved.mean));
       return;
     }
     below.parent = 0;
@@ -132,7 +132,7 @@ void learnAll(OnlineCells<D>& cells, OnlineScan<D>& scan, const OnlineOptions& o
     for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
       OnlineCell<D>& cell = cells.cell(order[begin].first, scale);
       const Vector<D> centre = grid.centre(cell.key, scale);
-      Nearest<D> nearest(cell.clusters);
+      NearestCluster<D> nearest(cell.clusters);
       for (end = begin; end < order.size() && order[end].first == order[begin].first; ++end) {
         const Vector<D> point = scan.points[order[end].second] - centre;
         const std::size_t c = nearest(point);

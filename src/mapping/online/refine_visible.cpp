@@ -5,11 +5,11 @@
 #include <queue>
 #include <utility>
 
-#include "clustering/undo_merges.h"
+#include "clustering/merge_gains.h"
 #include "core/parallel.h"
 #include "gaussmap/clustering/kl_kmeans.h"
-#include "mapping/blur.h"
 #include "mapping/cell_error.h"
+#include "mapping/clustering_noise.h"
 #include "mapping/online/online_state.h"
 
 namespace gaussmap::detail {
@@ -44,14 +44,14 @@ template <int D>
 Dendrogram dendrogramOf(OnlineCells<D>& cells, std::uint32_t i, int scale, std::vector<Gaussian<D>> data) {
   std::vector<double> areas;
   cells.forClustersUnder(i, scale, [&](const OnlineCluster<D>& finer) { areas.push_back(std::max(1.0, finer.area)); });
-  blurForClustering(data, cells.grid().side(0));
+  addClusteringNoise(data, cells.grid().side(0));
   return agglomerate(data, areas);
 }
 
 /// What the next cluster of a cell would gain, and what the last one has gained.
 template <int D>
 void noteGains(OnlineCell<D>& cell, const Dendrogram& dendrogram) {
-  const std::vector<double> gains = gainsOfUndoing(dendrogram);
+  const std::vector<double> gains = mergeGains(dendrogram);
   const std::size_t parts = cell.clusters.size();
   cell.need = parts - 1 < gains.size() ? gains[parts - 1] : 0.0;
   cell.spare = parts >= 2 && parts - 2 < gains.size() ? gains[parts - 2] : 0.0;

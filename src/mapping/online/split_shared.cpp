@@ -30,10 +30,10 @@ CellsBesideObjects cellsBeside(const OnlineCells<D>& cells, const std::vector<Go
 }
 
 template <int D>
-class Splitter {
+class SharedCellSplitter {
  public:
-  Splitter(OnlineCells<D>& cells, const std::deque<ScanSums<D>>& recent, const OnlineOptions& options,
-           CellsBesideObjects shared)
+  SharedCellSplitter(OnlineCells<D>& cells, const std::deque<ScanSums<D>>& recent, const OnlineOptions& options,
+                     CellsBesideObjects shared)
       : cells_(cells), recent_(recent), options_(options), side_(cells.grid().side(0)), shared_(std::move(shared)) {}
 
   const CellsBesideObjects& shared() const { return shared_; }
@@ -118,7 +118,7 @@ void splitSharedCells(OnlineCells<D>& cells, const OnlineScan<D>& scan, const st
   if (gone.empty() || recent.empty()) return;
   for (ScanSums<D>& seen : recent)  // when there is a cell again, these points will not be in it
     for (const GoneCell<D>& cell : gone) takeFrom<D>(seen.sums, cell.key);
-  const Splitter<D> splitter(cells, recent, options, cellsBeside(cells, gone));
+  const SharedCellSplitter<D> splitter(cells, recent, options, cellsBeside(cells, gone));
   std::map<std::uint32_t, std::vector<std::uint32_t>> off;  // all of them before the map changes
   for (const auto& [cell, shared] : splitter.shared()) {
     std::vector<std::uint32_t> scans = splitter.scansOff(cell, shared);

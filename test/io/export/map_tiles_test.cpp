@@ -80,7 +80,7 @@ TEST_F(MapTiles, OfTheFinestScaleBecomeAMapOfAllScales) {
   const GaussianMapOctree back = loadTiles(folder());
   EXPECT_EQ(back.options(), map.options());
   for (int s = 0; s < 3; ++s) expectClose(map, back, s);
-  EXPECT_FALSE(back.canGrow());
+  EXPECT_FALSE(back.acceptsScans());
 }
 
 TEST_F(MapTiles, OfAllScalesBecomeTheMap) {

@@ -20,8 +20,8 @@ using test::thinned;
 
 /// The coarsest scale and nothing under it.
 GaussianMapOctree bare(const GaussianMapOctree& map) {
-  return thinMap<3>(map, {std::vector<char>(map.cellCount(0), false), std::vector<char>(map.cellCount(1), false),
-                          std::vector<char>(map.cellCount(2), true)});
+  return keepCells<3>(map, {std::vector<char>(map.cellCount(0), false), std::vector<char>(map.cellCount(1), false),
+                            std::vector<char>(map.cellCount(2), true)});
 }
 
 TEST_F(MapFile, GivesBackEveryBitOfACompressedMap) {
@@ -42,7 +42,7 @@ TEST_F(MapFile, KnowsThatACompressedMapCannotGrow) {
   const auto path = directory_.path() / "small.gmap";
   save(path, map);
   EXPECT_TRUE(load(path).isCompressed());
-  EXPECT_FALSE(load(path).canGrow());
+  EXPECT_FALSE(load(path).acceptsScans());
 }
 
 TEST_F(MapFile, OfACompressedMapIsSmaller) {
@@ -70,7 +70,7 @@ TEST_F(MapFile, AsPcdGivesBackACompressedMapButForFloats) {
   savePcd(path, map);
   const GaussianMapOctree got = loadPcd(path);
   EXPECT_TRUE(got.isCompressed());
-  EXPECT_FALSE(got.canGrow());
+  EXPECT_FALSE(got.acceptsScans());
   for (int s = 0; s < 3; ++s) {
     EXPECT_EQ(got.scale(s).keys, map.scale(s).keys);
     EXPECT_EQ(got.scale(s).first_child, map.scale(s).first_child);

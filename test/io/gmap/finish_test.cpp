@@ -52,7 +52,7 @@ TEST_F(FinishedFile, IsWithinTheStatedErrorOfTheMap) {
     const GaussianMapOctree finished = savedFinished<3>(map);
     expectSameMap<3>(finished, finish<3>(map));
     expectClose<3>(map, finished);
-    EXPECT_FALSE(finished.canGrow());
+    EXPECT_FALSE(finished.acceptsScans());
   }
   const GaussianMapQuadtree plane = refined<2>(build<2>(randomCloud<2>(2000, 142), {0.02, 4, 4, 0.0}));
   expectSameMap<2>(savedFinished<2>(plane), finish<2>(plane));

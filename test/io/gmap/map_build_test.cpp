@@ -4,12 +4,12 @@
 #include <functional>
 #include <numeric>
 
-#include "clustering/undo_merges.h"
+#include "clustering/merge_gains.h"
 #include "gaussmap/io/gmap/build_map_file.h"
 #include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/io/pcd/pcd_writer.h"
 #include "gaussmap/io/scans/pcd_scans.h"
-#include "io/gmap/gain_threshold.h"
+#include "io/gmap/largest_gains.h"
 #include "io/gmap/map_file_fixture.h"
 
 namespace gaussmap::test {
@@ -37,7 +37,7 @@ class BuiltFile : public MapFile {
 
   /// The same bytes as by way of memory?
   void expectSameFile(const std::vector<Vector<3>>& points, const MapOptions& map, double budget,
-                      std::size_t max_memory = kLeastBuildMemory, int threads = 0) {
+                      std::size_t max_memory = kMinBuildMemory, int threads = 0) {
     const std::vector<PcdScan> scans = scansOf(points, 7);
     AccumulateOptions reading;
     reading.resolution = map.resolution;
@@ -112,7 +112,7 @@ TEST_F(BuiltFile, LeavesNothingBehind) {
   BuildMapFileOptions insert, little, finished, low, bytes, curves;
   insert.refine.method = RefineMethod::Insert;
   EXPECT_THROW(attempt(reading, insert), std::invalid_argument);
-  little.max_memory = kLeastBuildMemory - 1;
+  little.max_memory = kMinBuildMemory - 1;
   EXPECT_THROW(attempt(reading, little), std::invalid_argument);
   finished.save.precision = Precision::Finished;
   EXPECT_THROW(attempt(reading, finished), std::invalid_argument);

@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "editing/thin_map.h"
+#include "editing/keep_cells.h"
 #include "gaussmap/editing/compress.h"
 #include "io/gmap/map_file_fixture.h"
 
@@ -54,7 +54,7 @@ GaussianMap<D> partOf(const GaussianMap<D>& map, const Box<D>& box, int finest_s
         kept[cell] |= keep[static_cast<std::size_t>(s) - 1][child];
     }
   }
-  return thinMap<D>(map, keep);
+  return keepCells<D>(map, keep);
 }
 
 template <int D>

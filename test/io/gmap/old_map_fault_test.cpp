@@ -32,7 +32,7 @@ class OldMap : public MapFile {
 TEST_F(OldMap, Opens) {
   const GaussianMapOctree old = load(path_), fresh = build<3>(oldPoints(), kOptions);
   ASSERT_EQ(old.scales(), 3);
-  EXPECT_TRUE(old.canGrow());
+  EXPECT_TRUE(old.acceptsScans());
   EXPECT_EQ(old.scale(0).keys, fresh.scale(0).keys);
   EXPECT_EQ(old.scale(0).moments, fresh.scale(0).moments);
   for (int s = 1; s < 3; ++s) {

@@ -56,12 +56,12 @@ void expectRandomOnesWithinBounds(std::uint64_t seed) {
   double worst = 0.0;
   for (int round = 0; round < 20000; ++round) {
     const Gaussian<D> exact = randomGaussian<D>(random);
-    const Gaussian<D> restored = restore<D>(quantise<D>(exact, kNoise), kNoise, kSide);
+    const Gaussian<D> restored = dequantise<D>(quantise<D>(exact, kNoise), kNoise, kSide);
     expectWithinBounds<D>(exact, restored);
     if (testing::Test::HasFailure()) FAIL() << "round " << round;
     const double divergence = klDivergence<D>(exact, restored);
     worst = std::max(worst, divergence);
-    const Gaussian<D> again = restore<D>(quantise<D>(restored, kNoise), kNoise, kSide);  // nothing more is lost
+    const Gaussian<D> again = dequantise<D>(quantise<D>(restored, kNoise), kNoise, kSide);  // nothing more is lost
     EXPECT_EQ(again.cov, restored.cov);
     EXPECT_EQ(again.weight, restored.weight);
   }
@@ -77,7 +77,7 @@ TEST(Quantise, KeepsWithinTheStatedBounds) {
 TEST(Quantise, KeepsPowersOfTheNoiseFloorAsTheyAre) {
   for (const double sigma : {kNoise, 2 * kNoise, 64 * kNoise, kNoise / 1024}) {
     const Gaussian<3> sphere{{0, 0, 0}, sigma * sigma * Matrix<3>::Identity(), 7.0};
-    const Gaussian<3> restored = restore<3>(quantise<3>(sphere, kNoise), kNoise, kSide);
+    const Gaussian<3> restored = dequantise<3>(quantise<3>(sphere, kNoise), kNoise, kSide);
     EXPECT_EQ(restored.mean, sphere.mean);
     EXPECT_TRUE(restored.cov.isApprox(sphere.cov, 1e-14));
     EXPECT_EQ(restored.weight, 7.0);
@@ -88,17 +88,17 @@ TEST(Quantise, KeepsSmallCounts) {
   Gaussian<3> gaussian{{0, 0, 0}, Matrix<3>::Identity(), 1.0};
   for (int count = 1; count <= 32; ++count) {
     gaussian.weight = count;
-    EXPECT_EQ(restore<3>(quantise<3>(gaussian, 1.0), 1.0, 1.0).weight, count);
+    EXPECT_EQ(dequantise<3>(quantise<3>(gaussian, 1.0), 1.0, 1.0).weight, count);
   }
   for (const double weight : {1e-300, 1e-3, 33.0, 1e9, 1e300}) {
     gaussian.weight = weight;
-    EXPECT_NEAR(restore<3>(quantise<3>(gaussian, 1.0), 1.0, 1.0).weight / weight, 1.0, 1.0 / 32.0);
+    EXPECT_NEAR(dequantise<3>(quantise<3>(gaussian, 1.0), 1.0, 1.0).weight / weight, 1.0, 1.0 / 32.0);
   }
 }
 
 TEST(Quantise, KeepsMeansInTheirCell) {
   Gaussian<3> wide{{0.5, -0.5, 0.499}, 4.0 * Matrix<3>::Identity(), 1.0};  // steps of 25 cm
-  const Gaussian<3> restored = restore<3>(quantise<3>(wide, kNoise), kNoise, kSide);
+  const Gaussian<3> restored = dequantise<3>(quantise<3>(wide, kNoise), kNoise, kSide);
   EXPECT_LE(restored.mean.cwiseAbs().maxCoeff(), 0.501);
 }
 
@@ -122,22 +122,22 @@ TEST(Quantise, RefusesWhatIsNoGaussian) {
   }
   QuantisedGaussian<3> numbers;
   numbers.weight = 16;
-  EXPECT_NO_THROW(restore<3>(numbers, kNoise, kSide));
+  EXPECT_NO_THROW(dequantise<3>(numbers, kNoise, kSide));
   for (const std::int64_t far : {std::int64_t{100000}, std::int64_t{-100000}, std::int64_t{1} << 61}) {
     numbers.diagonal[1] = far;
-    EXPECT_THROW(restore<3>(numbers, kNoise, kSide), std::domain_error);
+    EXPECT_THROW(dequantise<3>(numbers, kNoise, kSide), std::domain_error);
     numbers.diagonal[1] = 0;
     numbers.weight = far;
-    EXPECT_THROW(restore<3>(numbers, kNoise, kSide), std::domain_error);
+    EXPECT_THROW(dequantise<3>(numbers, kNoise, kSide), std::domain_error);
     numbers.weight = 16;
   }
 }
 
 TEST(Quantise, KeepsLogOdds) {
   for (const float value : {-10.0f, -0.03f, 0.0f, 2.71f, 10.0f})
-    EXPECT_NEAR(restoreLogOdds(quantiseLogOdds(value)), value, 1.0f / 32.0f);
-  EXPECT_EQ(restoreLogOdds(quantiseLogOdds(10.0f)), 10.0f);
-  EXPECT_TRUE(std::isfinite(restoreLogOdds(quantiseLogOdds(3e38f))));
+    EXPECT_NEAR(dequantiseLogOdds(quantiseLogOdds(value)), value, 1.0f / 32.0f);
+  EXPECT_EQ(dequantiseLogOdds(quantiseLogOdds(10.0f)), 10.0f);
+  EXPECT_TRUE(std::isfinite(dequantiseLogOdds(quantiseLogOdds(3e38f))));
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ TEST_F(MapPcd, GivesBackTheMapButForFloats) {
     const GaussianMapOctree fine = refined(map);
     const GaussianMapOctree got = loadPcd(saved(fine));
     expectSameButForFloats(got, fine, 5e-7);
-    EXPECT_FALSE(got.canGrow());
+    EXPECT_FALSE(got.acceptsScans());
   }
 }
 

@@ -31,7 +31,7 @@ TEST(OnlineMapper, GivesTheFinestScaleOfTheBatchMapToTheLastBitUnderTheExactPoli
   const GaussianMap<3> online = mapper.map(), batch = build<3>(all, options.map);
   EXPECT_EQ(online.scale(0).keys, batch.scale(0).keys);
   EXPECT_EQ(online.scale(0).moments, batch.scale(0).moments);
-  EXPECT_TRUE(online.canGrow());
+  EXPECT_TRUE(online.acceptsScans());
 }
 
 TEST(OnlineMapper, GivesTheCoarseScalesOfTheBatchMapWhileNothingIsRefined) {
@@ -149,7 +149,7 @@ TEST(OnlineMapper, LearnsByTheRateOfEquationFive) {
   EXPECT_NEAR(learnt.cov(0, 0), noise * noise + rate * off * off, 1e-9);
   EXPECT_NEAR(learnt.cov(1, 1), noise * noise, 1e-15);
   EXPECT_DOUBLE_EQ(learnt.weight, 2.0);
-  EXPECT_FALSE(mapper.map().canGrow());
+  EXPECT_FALSE(mapper.map().acceptsScans());
 }
 
 TEST(OnlineMapper, TakesScansWithoutPoints) {
@@ -239,7 +239,7 @@ TEST(OnlineMapper, RunsTheSystemOfThePaper) {
   }
   EXPECT_LE(added, 8u);  // four clusters for each of the two coarse scales
   const GaussianMap<3> map = mapper.map();
-  EXPECT_FALSE(map.canGrow());
+  EXPECT_FALSE(map.acceptsScans());
   EXPECT_EQ(map.gaussianCount(1) + map.gaussianCount(2), map.cellCount(1) + map.cellCount(2) + added);
 }
 

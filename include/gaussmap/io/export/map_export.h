@@ -11,51 +11,65 @@
 
 namespace gaussmap {
 
+/// What a PLY file of a map holds.
 enum class PlyContent {
-  Ellipsoids,  ///< coloured triangles, for every viewer of meshes: 26 corners and 48 triangles a Gaussian
+  Ellipsoids,  ///< coloured triangles for any mesh viewer: 26 vertices and 48 triangles per Gaussian
   Points,      ///< means with normals, colours and weights
-  Splats       ///< the layout of 3D Gaussian splatting (Kerbl et al. 2023), for every viewer of splats
+  Splats       ///< the layout of 3D Gaussian splatting (Kerbl et al. 2023) for any splat viewer
 };
 
+/// What the colours of a PLY file show.
 enum class PlyColour {
-  Height,  ///< of the mean, viridis()
-  Normal   ///< normalColour()
+  Height,  ///< height of the mean, in the viridis colour scale
+  Normal   ///< direction of the normal: sand for horizontal surfaces, blue if it points along x, red along y
 };
 
+/// Options of savePly().
 struct GaussianPlyOptions {
-  PlyContent content = PlyContent::Ellipsoids;
-  PlyColour colour = PlyColour::Height;
-  std::optional<int> scale;  ///< nothing: leaves(), the map at its finest
-  double sigma = 2.0;        ///< half axes of the ellipsoids, in standard deviations; > 0
+  PlyContent content = PlyContent::Ellipsoids;  ///< ellipsoids, points or splats
+  PlyColour colour = PlyColour::Height;         ///< what the colours show
+  std::optional<int> scale;                     ///< the scale to write; std::nullopt: the leaves, see leaves()
+  double sigma = 2.0;                           ///< half axes of the ellipsoids, in standard deviations, > 0
 };
 
-/// Writes Gaussians as a binary little-endian PLY file of floats, whole or not at all (AtomicFile); returns how many.
-/// Maps so far away that floats would lose a thousandth of a finest cell are written about an origin, a multiple of
-/// 1024 m, which stands in the header: `comment origin X Y Z`, to be added to x y z.
-/// Splats: x y z, nx ny nz, f_dc_0..2 and f_rest_0..44 (colour from everywhere the same: zeros, for there are viewers
-/// that insist on all 45), opacity (before the sigmoid, so it is the log-odds of occupancy), scale_0..2 (natural
-/// logarithms of the standard deviations [m]), rot_0..3 (w x y z, unit); R diag(exp(scale))^2 R' is the covariance.
-/// Throws std::invalid_argument for a sigma that is not positive and finite; std::out_of_range for a scale that the map
-/// does not have; std::length_error for more ellipsoids than a mesh can have corners (2^31); FileError if the file
-/// cannot be written.
+/// Writes the Gaussians of a map to a binary little-endian PLY file of floats, and returns their number.
+///
+/// If floats would lose a thousandth of a finest cell far from the origin, the coordinates are relative to an origin at
+/// a multiple of 1024 m. The header then gives the offset to add to x y z: `comment origin X Y Z`.
+///
+/// PlyContent::Splats has the fields x y z, nx ny nz, f_dc_0..2, f_rest_0..44, opacity, scale_0..2 and rot_0..3. All
+/// f_rest are zero, because the colour is the same from all directions; some viewers require all 45. opacity is the
+/// value before the sigmoid: the log-odds of occupancy. scale is the natural logarithm of the standard deviations [m],
+/// rot is a unit quaternion (w x y z). The covariance is `R diag(exp(scale))^2 R'`.
+///
+/// The write is atomic. Throws:
+/// - std::invalid_argument if sigma is not positive and finite
+/// - std::out_of_range if the map does not have the scale
+/// - std::length_error if the ellipsoids have more vertices than a mesh can have (2^31)
+/// - FileError if the file cannot be written
 GAUSSMAP_API std::size_t savePly(const std::filesystem::path& path, const GaussianMap<3>& map,
                                  const GaussianPlyOptions& options = {});
 
-// The Gaussians of a map with all that it knows of them, in doubles, for other programs. Those of all scales (coarsest
-// first) or of one, in the order of the map. Whole files or none (AtomicFile), the same bytes for the same map; they
-// return how many there were. They throw std::out_of_range for a scale that the map does not have, FileError if the
-// file cannot be written.
-
-/// XML PolyData of VTK (.vtp), for ParaView: a point a Gaussian, the data appended raw. Of the points: covariance (9
-/// numbers [m^2]), deviation (its symmetric root [m], the tensors to draw: filter "Tensor Glyph" of a sphere of radius
-/// 0.5, scale factor 4, not limited, is the ellipsoid of two standard deviations), normal, weight, log_odds,
-/// occupancy (probability), scale, cell_side [m], parent (the point of the coarser Gaussian that it belongs to; -1 if
-/// there is none in the file).
+/// Writes the Gaussians of a map to an XML PolyData file of VTK (.vtp) for ParaView, and returns their number.
+///
+/// The file holds all scales, coarsest first, or the given scale, in the order of the map. There is one point per
+/// Gaussian, in doubles, as raw appended data. The point data are:
+/// - covariance: 9 numbers [m^2]
+/// - deviation: symmetric root of the covariance [m]. To draw the ellipsoid of two standard deviations, apply the
+///   filter "Tensor Glyph" to it, with a sphere of radius 0.5, scale factor 4, not limited.
+/// - normal, weight, log_odds, occupancy (probability), scale, cell_side [m]
+/// - parent: point of the parent Gaussian; -1 if the file does not hold it
+///
+/// The write is atomic, and the same map gives the same bytes. Throws std::out_of_range if the map does not have the
+/// scale, and FileError if the file cannot be written.
 GAUSSMAP_API std::size_t saveVtp(const std::filesystem::path& path, const GaussianMap<3>& map,
                                  std::optional<int> scale = std::nullopt);
 
-/// Text with one line a Gaussian under a line of names: scale,cell_side,cell_x,cell_y,cell_z,x,y,z,cov_xx,cov_xy,
-/// cov_xz,cov_yy,cov_yz,cov_zz,weight,log_odds. Numbers have the digits that give back the same double.
+/// Writes the Gaussians of a map to a CSV file, and returns their number.
+///
+/// The first line gives the names: scale, cell_side, cell_x, cell_y, cell_z, x, y, z, cov_xx, cov_xy, cov_xz, cov_yy,
+/// cov_yz, cov_zz, weight, log_odds. Then there is one line per Gaussian, in the same order as in saveVtp(). The
+/// numbers have enough digits to restore the same doubles. Writes and throws like saveVtp().
 GAUSSMAP_API std::size_t saveCsv(const std::filesystem::path& path, const GaussianMap<3>& map,
                                  std::optional<int> scale = std::nullopt);
 

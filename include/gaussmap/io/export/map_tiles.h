@@ -10,31 +10,39 @@
 
 namespace gaussmap {
 
-/// The index of a directory of tiles.
+/// The name of the index file in a folder of tiles.
 inline constexpr const char* kTilesIndex = "pointcloud_map_metadata.yaml";
 
+/// Options of saveTiles().
 struct TilesOptions {
-  int size = 20;                 ///< side of a tile [m], whole, because the index holds whole numbers; >= 1
-  std::optional<int> scale = 0;  ///< the scale that is written; nothing: all
+  int size = 20;                 ///< side of a tile [m], >= 1; an integer because the index holds integers
+  std::optional<int> scale = 0;  ///< the scale to write; std::nullopt: all scales
 };
 
+/// The result of saveTiles().
 struct WrittenTiles {
-  std::size_t tiles = 0;
-  std::size_t gaussians = 0;
+  std::size_t tiles = 0;      ///< number of files
+  std::size_t gaussians = 0;  ///< number of Gaussians in all files
 };
 
-/// Writes Gaussians as PCD files by squares of the ground, in the layout that Autoware's pointcloud_map_loader reads
-/// for dynamic map loading: `x_resolution`, `y_resolution` and a line `tile_X_Y.pcd: [X, Y]` for each file with its
-/// lower corner. A Gaussian belongs to the square that its mean lies in. The files have the fields of savePcd(),
-/// means in the map frame as floats, so that their x, y, z are a point cloud map; a comment in the index keeps the
-/// options of the map. The directory appears whole or not at all. Throws FileError if it is there already (unless it is
-/// empty) or cannot be written, std::out_of_range for a scale that the map does not have or a map beyond 2^31 m,
-/// std::invalid_argument for a size below 1.
+/// Writes a map as a folder of PCD files, one per square of the ground, for dynamic map loading.
+///
+/// The layout is that of Autoware's pointcloud_map_loader: the index gives `x_resolution`, `y_resolution`, and per file
+/// the line `tile_X_Y.pcd: [X, Y]` with its lower corner. A Gaussian belongs to the square that contains its mean. The
+/// files have the fields of savePcd(), with means in the map frame as floats, so x, y, z form a point cloud map. A
+/// comment in the index stores the options of the map.
+///
+/// The write is atomic: the folder appears only when it is complete. Throws FileError if the folder exists and is not
+/// empty, or cannot be written. Throws std::out_of_range if the map does not have the scale or reaches beyond 2^31 m,
+/// and std::invalid_argument if the size is below 1.
 GAUSSMAP_API WrittenTiles saveTiles(const std::filesystem::path& folder, const GaussianMap<3>& map,
                                     const TilesOptions& options = {});
 
-/// The map that such a directory holds: the scales that were written, but from the finest scale alone the coarser ones
-/// are made anew, one Gaussian a cell, if the index tells the options. Throws FileError, naming index or tile.
+/// Reads the map from a folder of tiles. The map has the scales that were written.
+///
+/// A folder can hold only the finest scale with one Gaussian per cell. If the index then gives the options, the coarser
+/// scales are rebuilt with one Gaussian per cell. Throws FileError if a file is not valid; the message gives the index
+/// or the tile.
 GAUSSMAP_API GaussianMap<3> loadTiles(const std::filesystem::path& folder);
 
 }  // namespace gaussmap

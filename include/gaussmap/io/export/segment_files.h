@@ -7,30 +7,37 @@
 #include "gaussmap/segments/segment_map.h"
 #include "gaussmap/version.h"
 
-// Maps of line segments as files. All writers write whole files or none (AtomicFile), the same bytes for the same map,
-// and throw FileError if the file cannot be written, std::invalid_argument, naming the segment, if a number of it is
-// not finite.
+// Maps of line segments as files. All writers are atomic and write the same bytes for the same map. They throw
+// FileError if the file cannot be written, and std::invalid_argument if a number is not finite or a segment is not in
+// exactly one chain; the message gives the segment or the chain.
 namespace gaussmap {
 
-/// A binary PCD file that every PCL tool opens: an organised cloud, one segment a row, its start and its end. Fields: x
-/// y z (floats, z = 0) and normal_x normal_y normal_z (towards free space) for looking at, and for reading again
-/// position[2] (the same point in doubles) normal_variance covariance[3] (offset, offset and angle, angle) weight
-/// last_seen, chain (number from 0) closed (of the chain); see Segment and SegmentMap.
+/// Writes a map of segments to a binary PCD file that any PCL tool can open.
+///
+/// The file is an organised cloud with one segment per row: its start and its end. The fields x y z (floats, z = 0) and
+/// normal_x normal_y normal_z (towards free space) are for viewing. The other fields are for loadSegmentsPcd():
+/// position[2] (the same point in doubles), normal_variance, covariance[3] (offset, offset and angle, angle), weight,
+/// last_seen, chain (number, from 0) and closed (of the chain). See Segment and SegmentMap.
+/// Throws FileError if the file cannot be written, and std::invalid_argument if the map is not valid or a coordinate
+/// does not fit a float.
 GAUSSMAP_API void saveSegmentsPcd(const std::filesystem::path& path, const SegmentMap& map);
 
-/// Reads what saveSegmentsPcd() wrote, to the last bit. Throws FileError if the file is no such cloud or a value is
-/// impossible.
+/// Reads a map of segments from a file of saveSegmentsPcd(), with bit-identical values. Throws FileError if the file is
+/// not a map of segments or a value is not possible.
 GAUSSMAP_API SegmentMap loadSegmentsPcd(const std::filesystem::path& path);
 
-/// Has the PCD file the fields that saveSegmentsPcd() writes? Throws FileError if it is not a PCD file.
+/// Returns true if a PCD file has the fields of saveSegmentsPcd(). Throws FileError if it is not a PCD file.
 GAUSSMAP_API bool isSegmentPcd(const std::filesystem::path& path);
 
-/// GeoJSON: a FeatureCollection with one LineString a segment, free space on its left; coordinates are metres of the
-/// map frame, not degrees. Properties: chain, closed, length, normal_variance, offset_variance,
-/// offset_angle_covariance, angle_variance, weight, last_seen.
+/// Writes a map of segments to a GeoJSON file: a FeatureCollection with one LineString per segment.
+///
+/// The free space is on the left of a LineString. Coordinates are metres of the map frame, not degrees. The properties
+/// are chain, closed, length, normal_variance, offset_variance, offset_angle_covariance, angle_variance, weight and
+/// last_seen. Throws FileError if the file cannot be written, and std::invalid_argument if the map is not valid.
 GAUSSMAP_API void saveSegmentsGeoJson(const std::filesystem::path& path, const SegmentMap& map);
 
-/// CSV, one line a segment: chain, closed, start_x, start_y, end_x, end_y and the rest of the properties above.
+/// Writes a map of segments to a CSV file with one line per segment: chain, closed, start_x, start_y, end_x, end_y, and
+/// the other properties of saveSegmentsGeoJson(). Throws like saveSegmentsGeoJson().
 GAUSSMAP_API void saveSegmentsCsv(const std::filesystem::path& path, const SegmentMap& map);
 
 }  // namespace gaussmap

@@ -13,32 +13,39 @@
 
 namespace gaussmap {
 
-inline constexpr std::size_t kLeastBuildMemory = std::size_t{1} << 20;
+/// Minimum of BuildMapFileOptions::max_memory [bytes].
+inline constexpr std::size_t kMinBuildMemory = std::size_t{1} << 20;
 
+/// Options of buildMapFile().
 struct BuildMapFileOptions {
-  std::size_t max_memory = std::size_t{1} << 30;  ///< about so much is used beside the scans that are read and what the
-                                                  ///< program takes anyhow, >= kLeastBuildMemory [bytes]
-  Budget budget = PerCell{};                      ///< or MaxGaussians
-  RefineOptions refine;  ///< by agglomeration, without curves; its threads are those of the whole build
-  SaveOptions save;
+  /// Approximate memory limit [bytes], >= kMinBuildMemory. The scans being read and the memory of the program itself
+  /// are not included.
+  std::size_t max_memory = std::size_t{1} << 30;
+  Budget budget = PerCell{};  ///< PerCell or MaxGaussians
+  RefineOptions refine;       ///< agglomeration without curves; its `threads` applies to the whole build
+  SaveOptions save;           ///< of the file, with Precision::Exact
 };
 
+/// The result of buildMapFile().
 struct BuiltMapFile {
-  PointCounts counts;
-  std::vector<std::size_t> cells, gaussians;  ///< by scale, finest first
+  PointCounts counts;  ///< accepted and dropped points
+  /// Number of cells per scale, finest first.
+  std::vector<std::size_t> cells, gaussians;  ///< number of Gaussians per scale, finest first
 };
 
-/// Scans -> map file, for maps that do not fit into memory: the file has the same bytes as that which save() writes
-/// of refine(build(accumulateScans())) with the same options and metadata.
+/// Builds a map file from scans in limited memory, for maps that do not fit into memory.
 ///
-/// Sums of points that fill their share of the memory are written, by tile, to a file without a name in the folder of
-/// the map. Scale by scale, from the finest up, tiles are read back one batch after the other, refined, and
-/// compressed. Which clusters of a scale the budget allows is found in all of them at once without holding them: their
-/// dendrograms wait in that file, and a few walks over the gains of their merges find the least one that is taken. What
-/// is not bounded is one tile: at least 32 cells along a side (tileSpan()), in which only occupied cells count.
+/// The file is bit-identical to the file that save() writes of refine(build(accumulateScans())) with the same options
+/// and metadata.
 ///
-/// `metadataOf(counts)` = the metadata of the map. Throws as accumulateScans(), save() and refine();
-/// std::invalid_argument for RefineMethod::Insert, which looks at all cells at once, and for too little memory.
+/// When the sums of points reach their share of the memory, they are written by tile to an anonymous temporary file in
+/// the folder of the map. The scales are built from fine to coarse: batches of tiles are read back, refined and
+/// compressed. The budget applies to all clusters of a scale at once. The dendrograms therefore wait in the temporary
+/// file, and a few passes over the gains of their merges find the smallest gain that is used. One tile must always fit
+/// into memory: it has at least 32 cells along a side, of which only occupied cells need memory.
+///
+/// `metadataOf(counts)` returns the metadata of the map. Throws like accumulateScans(), save() and refine(). Also
+/// throws std::invalid_argument for RefineMethod::Insert, which needs all cells at once, and for too little memory.
 GAUSSMAP_API BuiltMapFile buildMapFile(const Scans& scans, const AccumulateOptions& reading, const MapOptions& map,
                                        const std::filesystem::path& path,
                                        const std::function<MapMetadata(const PointCounts&)>& metadataOf,

@@ -14,106 +14,125 @@
 
 namespace gaussmap {
 
-/// The .gmap file: an SQLite database with the tables `metadata` (name, value) and `tiles` (scale, x, y, z, cells,
-/// gaussians, data). A tile is the block of cells of one scale whose keys share floor(key / span), span = the
-/// smallest power of the ratio that is at least 32; `data` is a zstd frame with its own checksum, which holds the
-/// cells as columns. PRAGMA application_id names the format, PRAGMA user_version its schema.
+/// The application id of a .gmap file ("gmap"), stored as PRAGMA application_id.
+///
+/// A .gmap file is an SQLite database with the tables `metadata` (name, value) and `tiles` (scale, x, y, z, cells,
+/// gaussians, data). A tile is the block of cells of one scale whose keys share floor(key / span). The span is the
+/// smallest power of the ratio that is at least 32. `data` is a zstd frame with its own checksum; it holds the cells as
+/// columns.
 inline constexpr std::int32_t kMapFileId = 0x676D6170;  // "gmap"
+/// The version of the schema of a .gmap file, stored as PRAGMA user_version.
 inline constexpr int kMapFileVersion = 1;
 
-/// Free text kept beside the map, by name: how it was made, where it lies.
+/// Free text that is stored with the map, by name: for example how the map was made and where it is.
 using MapMetadata = std::map<std::string, std::string>;
 
-/// How much of a map a file keeps.
+/// How exactly a file stores the map.
 enum class Precision {
-  Exact,    ///< every bit
-  Finished  ///< for use, not for growth: see finish()
+  Exact,    ///< all bits
+  Finished  ///< a final map, see finish()
 };
 
-/// The name of the metadata that say how far a finished map is from the one that it was made from.
+/// Name of the metadata entry that states the precision of a final map.
 inline constexpr const char* kFinalEntry = "final";
 
+/// Options of save() and savedSize().
 struct SaveOptions {
-  bool overwrite = false;  ///< replace an existing file
-  int compression = 3;     ///< zstd level
-  int threads = 0;         ///< 0 = all; the bytes of the file do not depend on it
-  Precision precision = Precision::Exact;
+  bool overwrite = false;                  ///< replaces an existing file
+  int compression = 3;                     ///< zstd level
+  int threads = 0;                         ///< 0 = all cores
+  Precision precision = Precision::Exact;  ///< how exactly the map is stored
 };
 
-/// Writes the map whole or not at all: beside the target, then renamed over it. The same map gives the same bytes.
-/// A finished file says so in its metadata, by the name kFinalEntry.
-/// Throws FileError if the file exists and may not be replaced, or cannot be written; std::domain_error as finish().
+/// Writes a map to a .gmap file. The same map gives the same bytes.
+///
+/// The write is atomic: readers see either the old or the new file, also after a crash. A final map is marked by the
+/// metadata entry kFinalEntry. Throws FileError if the file exists and `overwrite` is not set, or if the file cannot be
+/// written. For Precision::Finished, it throws std::domain_error like finish().
 template <int D>
 GAUSSMAP_API void save(const std::filesystem::path& path, const GaussianMap<D>& map, const MapMetadata& metadata = {},
                        const SaveOptions& options = {});
 
-/// How large the file would be that save() writes, to the byte [bytes]. Takes as much memory.
+/// Returns the exact size of the file that save() would write [bytes]. The function builds the file in memory.
 template <int D>
 GAUSSMAP_API std::uintmax_t savedSize(const GaussianMap<D>& map, const MapMetadata& metadata = {},
                                       const SaveOptions& options = {});
 
-/// A map for use, not for growth: about 10 bytes a Gaussian on the disk. Sums of points are dropped, numbers are
-/// rounded to what the spread of a Gaussian allows, which is nowhere less than the noise floor:
-/// - a mean by at most 1/16 standard deviation along each axis (that with the other coordinates fixed),
-/// - the standard deviation in every direction by at most 5 %: covariances stay positive definite,
-/// - a weight by at most 1/32 of it (up to 32 points not at all), log-odds by at most 1/32.
-/// Scales finer than `finest_scale` are left out. Returns what load() gives back of the file that save() writes
-/// with Precision::Finished; it cannot grow. Throws std::out_of_range for a scale that the map does not have,
-/// std::domain_error for a Gaussian that is none.
+/// Returns the final form of a map: it takes about 10 bytes per Gaussian on disk, but accepts no more scans.
+///
+/// The sums of points are dropped, and the numbers are rounded:
+/// - A mean changes by at most 1/16 standard deviation along each axis (for fixed other coordinates).
+/// - The standard deviation in any direction changes by at most 5 %, and covariances stay positive definite.
+/// - A weight changes by at most 1/32 of its value (weights up to 32 are exact), log-odds by at most 1/32.
+///
+/// The standard deviation of a Gaussian is nowhere below the noise floor. Scales finer than `finest_scale` are left
+/// empty. For `finest_scale` = 0, the result is what load() returns for a file saved with Precision::Finished.
+/// Throws std::out_of_range if the map does not have the scale, and std::domain_error if a covariance is not positive
+/// definite or a weight is not positive.
 template <int D>
 GAUSSMAP_API GaussianMap<D> finish(const GaussianMap<D>& map, int finest_scale = 0);
 
-/// What save() wrote, equal to it in every bit; a finished map is that of finish(). Throws FileError, saying what is
-/// wrong, if the file is no map, of a newer version, of another dimension, truncated or altered.
+/// Reads a map from a .gmap file. The map is bit-identical to the saved one, or to the result of finish() if it was
+/// saved with Precision::Finished.
+///
+/// Throws FileError if the file is not a map, has a newer version or another dimension, or is truncated or altered; the
+/// message gives the reason.
 template <int D = 3>
 GAUSSMAP_API GaussianMap<D> load(const std::filesystem::path& path);
 
-/// The metadata given to save(). Throws FileError as load().
+/// Returns the metadata given to save(). Throws FileError if the file is not a map, like load().
 GAUSSMAP_API MapMetadata loadMetadata(const std::filesystem::path& path);
 
-/// How large the parts of a map file are.
+/// The sizes of the parts of a map file.
 struct MapFileSize {
-  std::uintmax_t file = 0;                  ///< [bytes]
-  std::vector<std::uintmax_t> scale_tiles;  ///< compressed tiles of each scale, finest first [bytes]
+  std::uintmax_t file = 0;                  ///< whole file [bytes]
+  std::vector<std::uintmax_t> scale_tiles;  ///< compressed tiles per scale, finest first [bytes]
 };
+/// Returns the sizes of the parts of a map file. Throws FileError if the file is not a map.
 GAUSSMAP_API MapFileSize mapFileSize(const std::filesystem::path& path);
 
-// What the commands write beside a map, and `gaussmap info` shows. A refinement in C++:
+// The entries below record how a map was made. The commands write them, and `gaussmap info` shows them. Example in C++:
 //   const Budget budget = PerCell{4.0};
 //   MapMetadata metadata = loadMetadata("in.gmap");
 //   recordStep(metadata, refineStep(budget));
 //   save("out.gmap", refine(load("in.gmap"), budget), metadata);
 
-/// Metadata entry: a JSON array with one object per step, in the order in which they were done.
+/// Name of the metadata entry with the history: a JSON array with one object per step, in the order of the steps.
 inline constexpr const char* kHistoryEntry = "history";
-/// Metadata entry: JSON, [{"scale": s, "points": [{"gaussians": n, "q99": m, "q95": m, "mean": m}, ...]}, ...].
+/// Name of the metadata entry with the error curves, as JSON:
+/// `[{"scale": s, "points": [{"gaussians": n, "q99": m, "q95": m, "mean": m}, ...]}, ...]`.
 inline constexpr const char* kCurvesEntry = "error_curves";
 
-/// The step of a refinement: method, budget, and what else differs from the defaults, as a JSON object. The members of
-/// `details`, another JSON object such as {"command": "refine"}, are added and replace members of the same name. Throws
-/// std::invalid_argument if `details` is not a JSON object.
+/// Returns the history step of a refinement as a JSON object: method, budget, and all options that differ from the
+/// defaults.
+///
+/// The members of `details`, another JSON object such as `{"command": "refine"}`, are added and replace members of the
+/// same name. Throws std::invalid_argument if `details` is not a JSON object.
 GAUSSMAP_API std::string refineStep(const Budget& budget, const RefineOptions& options = {},
                                     const std::string& details = "{}");
-/// The same for simplify().
+/// Returns the history step of a simplification as a JSON object. It works like refineStep().
 GAUSSMAP_API std::string simplifyStep(const Budget& budget, const SimplifyOptions& options = {},
                                       const std::string& details = "{}");
 
-/// Adds a step to the history. A history that is not a JSON array is replaced. Throws std::invalid_argument if `step`
-/// is not a JSON object.
+/// Appends a step to the history. A history that is not a JSON array is replaced. Throws std::invalid_argument if
+/// `step` is not a JSON object.
 GAUSSMAP_API void recordStep(MapMetadata& metadata, const std::string& step);
 
-/// Sets the error curves; removes old ones if there are none.
+/// Stores the error curves in the metadata, or removes old curves if `curves` is empty.
 GAUSSMAP_API void recordCurves(MapMetadata& metadata, const std::vector<ErrorCurve>& curves);
 
-/// save() and savedSize() with the curves of the result in the metadata.
+/// Writes the map of a result to a .gmap file, with the curves of the result in the metadata. Throws like the other
+/// save().
 template <int D>
 GAUSSMAP_API void save(const std::filesystem::path& path, const RefineResult<D>& result, MapMetadata metadata = {},
                        const SaveOptions& options = {});
+/// Returns the exact size of the file that save() would write of a result [bytes].
 template <int D>
 GAUSSMAP_API std::uintmax_t savedSize(const RefineResult<D>& result, MapMetadata metadata = {},
                                       const SaveOptions& options = {});
 
-/// The budget of a map file of at most so many bytes, with curves and this metadata: measured by savedSize().
+/// Returns the budget of a map file of at most `bytes` bytes, including curves and this metadata. It measures with
+/// savedSize().
 GAUSSMAP_API MaxBytes maxFileBytes(std::uintmax_t bytes, const MapMetadata& metadata = {},
                                    const SaveOptions& options = {});
 

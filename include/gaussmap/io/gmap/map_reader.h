@@ -12,54 +12,64 @@
 
 namespace gaussmap {
 
+/// Options of MapReader.
 struct MapReaderOptions {
-  std::size_t cache_bytes = std::size_t{256} << 20;  ///< most memory of decoded tiles that are kept; 0: none is
-  int threads = 0;                                   ///< 0 = all
+  std::size_t cache_bytes = std::size_t{256} << 20;  ///< maximum memory of cached tiles [bytes]; 0: no cache
+  int threads = 0;                                   ///< 0 = all cores
 };
 
-/// What a reader did so far.
+/// Counts the work of a MapReader so far.
 struct MapReaderStatistics {
-  std::size_t tiles_read = 0;    ///< from the file, decoded
-  std::size_t tiles_cached = 0;  ///< found in the cache instead
-  std::size_t cache_bytes = 0;   ///< decoded tiles in the cache now
+  std::size_t tiles_read = 0;    ///< tiles read from the file and decoded
+  std::size_t tiles_cached = 0;  ///< tiles found in the cache
+  std::size_t cache_bytes = 0;   ///< current size of the cache
 };
 
-/// A map file that is loaded box by box: opening reads the metadata and no tile, a box reads the tiles that it meets,
-/// coarsest scale first. Decoded tiles stay in memory, the least recently used go first.
+/// Reads a map file box by box.
 ///
-/// Safe beside writers: map files are never changed where they are, only replaced as a whole (save(), updateMap()).
-/// A reader keeps the file that it opened, so that all it loads is of one version, until refresh() takes the new one.
-/// Calls from several threads are safe and wait for each other.
+/// Opening reads only the metadata. Loading a box reads the tiles that intersect it, from coarse to fine. Decoded tiles
+/// stay in memory until the cache is full; the least recently used tiles are dropped first.
+///
+/// Writers can run at the same time, because save() and updateMap() replace a map file as a whole and never change it
+/// in place. A reader keeps the file that it has opened, so all its data are of one version until refresh(). Calls from
+/// several threads are safe; they wait for each other.
 template <int D>
 class GAUSSMAP_API MapReader {
  public:
-  /// Throws FileError as load(), as far as the metadata tell; what is wrong with a tile is found when it is read.
+  /// Opens a map file. Throws FileError like load(), as far as the metadata show the problem. A damaged tile is
+  /// detected when it is read.
   explicit MapReader(const std::filesystem::path& path, const MapReaderOptions& options = {});
   ~MapReader();
   MapReader(MapReader&&) noexcept;
   MapReader& operator=(MapReader&&) noexcept;
 
+  /// Returns the path of the file.
   const std::filesystem::path& path() const;
-  /// Where its cells are. Like metadata(), a reference that refresh() ends.
+  /// Returns the grid of the map. The reference is valid until refresh().
   const Grid<D>& grid() const;
-  /// What was given to save().
+  /// Returns the metadata given to save(). The reference is valid until refresh().
   const MapMetadata& metadata() const;
-  /// Cells and Gaussians of a scale of the whole file, as its metadata tell.
+  /// Returns the number of cells of a scale of the whole file, from its metadata.
   std::size_t cellCount(int scale) const;
+  /// Returns the number of Gaussians of a scale of the whole file, from its metadata.
   std::size_t gaussianCount(int scale) const;
 
-  /// The part of the map in a box [m, map frame], faces included, infinite ones too: the cells of `finest_scale` that
-  /// meet it, where a compressed map has nothing so fine the coarser cells that stand there, and all cells above
-  /// these. Every cell is as it is in the whole map, to the last bit: coarse cells reach beyond the box. Scales finer
-  /// than `finest_scale` are empty. load(box, 2), load(box, 1), load(box) show a place from coarse to fine and
-  /// read each tile once. Throws std::out_of_range for a scale that the map does not have, std::invalid_argument for a
-  /// box that is none, FileError for damaged tiles.
+  /// Returns the part of the map in a box [m, map frame], including its faces. The box can be infinite.
+  ///
+  /// The part holds the cells of `finest_scale` that intersect the box. Where a compressed map has no such cells, it
+  /// holds the coarser leaf cells. It also holds all ancestors of these cells. Every cell is bit-identical to the cell
+  /// of the whole map, so coarse cells extend beyond the box. Scales finer than `finest_scale` are empty. `load(box,
+  /// 2)`, `load(box, 1)`, `load(box)` show a place from coarse to fine and read each tile once.
+  ///
+  /// Throws std::out_of_range if the map does not have the scale, std::invalid_argument if the box has low > high, and
+  /// FileError if a tile is damaged.
   GaussianMap<D> load(const Box<D>& box, int finest_scale = 0);
 
-  /// Goes over to the file that has the path now. False if it is still the same one; else the cache is empty, and the
-  /// options of the map may be others. Throws FileError, and keeps the old file, if the new one cannot be read.
+  /// Reopens the path if the file has been replaced, and returns true if so. The cache is then empty, and the options
+  /// of the map can differ. Throws FileError, and keeps the old file, if the new file cannot be read.
   bool refresh();
 
+  /// Returns the counts of the work so far.
   MapReaderStatistics statistics() const;
 
  private:

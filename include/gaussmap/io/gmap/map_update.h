@@ -14,40 +14,46 @@
 
 namespace gaussmap {
 
+/// Options of updateMap().
 struct UpdateOptions {
-  std::optional<double> budget;                 ///< Gaussians of a coarse scale, as a multiple of its cells, >= 1;
-                                                ///< nothing: as many for a cell as the scale has now
-  MergeCost merge_cost = MergeCost::Volume;     ///< as RefineOptions
-  int compression = SaveOptions().compression;  ///< zstd level of the tiles that change
-  int threads = 0;                              ///< 0 = all; the bytes of the file do not depend on it
+  /// Maximum number of Gaussians of a coarse scale, as a multiple of its cells, >= 1; std::nullopt: the present
+  /// multiple of the scale.
+  std::optional<double> budget;
+  MergeCost merge_cost = MergeCost::Volume;     ///< as in RefineOptions
+  int compression = SaveOptions().compression;  ///< zstd level of changed tiles
+  int threads = 0;                              ///< 0 = all cores
 };
 
+/// The result of updateMap().
 struct MapUpdate {
-  std::vector<std::size_t> cells, gaussians;  ///< of the whole map now, by scale, finest first
-  std::size_t tiles_written = 0;              ///< the others keep their bytes
-  std::size_t tiles = 0;                      ///< in the file
+  /// Number of cells of the whole map after the update, per scale, finest first.
+  std::vector<std::size_t> cells, gaussians;  ///< number of Gaussians of the whole map, per scale, finest first
+  std::size_t tiles_written = 0;              ///< number of changed tiles; the others keep their bytes
+  std::size_t tiles = 0;                      ///< number of tiles in the file
 };
 
-/// Adds points to a map file, reading only what lies under the coarsest cells that they fall into, writing only the
-/// tiles that change. The finest scale is that of a map built of all points at once, to the last bit. Coarse cells with
-/// new points under them are made anew; they share the Gaussians that the budget of the whole scale leaves beside the
-/// cells that stay as they are. A build at once shares all of them among all cells: with one Gaussian a cell (budget 1)
-/// the coarse scales are the same too, with more refine() makes them so.
+/// Adds points to a map file. It reads only the tiles below the coarsest cells with new points and writes only the
+/// tiles that change.
 ///
-/// Cells of a map with occupancy keep theirs, new ones are certain (kMaxOccupancy): points are no evidence that
-/// something else has gone; coarse Gaussians are as occupied as what is most so under them.
+/// The finest scale is bit-identical to that of a map built from all points. Coarse cells with new points below them
+/// are rebuilt; all other cells stay unchanged. The rebuilt cells share the part of the scale's budget that the
+/// unchanged cells leave. A map built from all points shares the whole budget among all cells. With one Gaussian per
+/// cell (budget 1) the coarse scales are therefore identical; with a larger budget, refine() makes them identical.
 ///
-/// The file is copied beside itself, changed there, and renamed: whoever reads, and whatever interrupts, there is the
-/// old map or the new one. It takes the place of both on the disk for that time. One writer at a time.
-/// `edit` may change the metadata given to save(). Throws FileError if the file cannot be read or written, or takes
-/// no more points (GaussianMap::canGrow()), std::invalid_argument if the cells of the grid are not those of the map or
-/// the budget is below 1.
+/// In a map with occupancy, finest cells keep their log-odds, and new cells get kMaxOccupancy. New points are no
+/// evidence that something else is gone. The log-odds of a rebuilt coarse cluster are the maximum over its children.
+///
+/// The update is atomic: readers see either the old or the new file, also after a crash. The file is copied, changed
+/// and renamed, so the disk holds both for a short time. Only one writer can run at a time. `edit` can change the
+/// metadata given to save(). Throws FileError if the file cannot be read or written, or if the map accepts no more
+/// points (see GaussianMap::acceptsScans()). Throws std::invalid_argument if the cells of `added` differ from those of
+/// the map, or if the budget is below 1.
 template <int D>
 GAUSSMAP_API MapUpdate updateMap(const std::filesystem::path& path, const MomentGrid<D>& added,
                                  const UpdateOptions& options = {}, const std::function<void(MapMetadata&)>& edit = {});
 
-/// The options of a map file: what points must be counted by that shall be added to it. Throws FileError as load(),
-/// and if the map takes no more points.
+/// Returns the options of a map file to which points can be added. Count the points in cells of this resolution. Throws
+/// FileError if the file is not a map, or if the map accepts no more points.
 template <int D>
 GAUSSMAP_API MapOptions growingMapOptions(const std::filesystem::path& path);
 

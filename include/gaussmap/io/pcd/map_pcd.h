@@ -13,58 +13,66 @@
 
 namespace gaussmap {
 
-/// One Gaussian as it stands in a PCD file, and as PCL's PointGaussian holds it.
+/// One Gaussian as stored in a PCD file and in PCL's PointGaussian.
 struct GaussianRecord {
-  std::array<float, 3> mean;        ///< x y z [m] about the origin of its records
-  std::array<float, 6> covariance;  ///< xx xy xz yy yz zz [m^2]
-  float weight;                     ///< points
-  float occupancy;                  ///< log-odds; kMaxOccupancy where no scan was asked
-  float cell_side;                  ///< [m]
-  float scale;                      ///< 0 = finest; a float because pcl::PassThrough filters by nothing else
-  std::array<std::int32_t, 3> cell;
+  std::array<float, 3> mean;         ///< x y z [m], relative to GaussianRecords::origin
+  std::array<float, 6> covariance;   ///< xx xy xz yy yz zz [m^2]
+  float weight;                      ///< number of points
+  float occupancy;                   ///< log-odds; kMaxOccupancy if the map has no occupancy
+  float cell_side;                   ///< side of its cell [m]
+  float scale;                       ///< 0 = finest; a float because pcl::PassThrough filters only floats
+  std::array<std::int32_t, 3> cell;  ///< key of its cell
 };
 
+/// The Gaussians of a map as records.
 struct GAUSSMAP_API GaussianRecords {
-  std::vector<GaussianRecord> records;
-  /// What to add to the means [m]: zero, but for maps so far away that floats would lose a thousandth of a finest
-  /// cell. A multiple of 1024 m, so that a float holds it exactly. Written as the file's VIEWPOINT.
+  std::vector<GaussianRecord> records;  ///< in any order
+  /// Offset to add to the means [m]. Zero, unless floats would lose a thousandth of a finest cell far from the origin.
+  /// A multiple of 1024 m, so a float holds it exactly. Written as the VIEWPOINT of the file.
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
 };
 
-/// The Gaussians of all scales (coarsest first) or of one, in key order.
-/// Throws std::out_of_range for a scale that the map does not have.
+/// Converts the Gaussians of all scales (coarsest first), or of one scale, to records in key order. Throws
+/// std::out_of_range if the map does not have the scale.
 GAUSSMAP_API GaussianRecords toRecords(const GaussianMap<3>& map, std::optional<int> scale = std::nullopt);
 
-/// The map that such records describe. The grid follows from cell sides and scales; a finer Gaussian's parent is the
-/// cluster of the cell above that is nearest under the KL divergence. Where floats have cost a covariance its
-/// positive definiteness, the eigenvalues are lifted to 1e-6 of the largest. Coarse cells without finer ones make a
-/// compressed map; one scale alone, whichever, becomes the finest scale of a map of one scale. Throws
-/// std::invalid_argument, saying what, if they describe no map.
+/// Converts records to a map.
+///
+/// The grid follows from cell sides and scales. The parent of a finer Gaussian is the nearest cluster of the coarser
+/// cell under the KL divergence. If rounding to floats has made a covariance indefinite, its eigenvalues are raised to
+/// at least 1e-6 of the largest. Coarse cells without finer cells give a compressed map. A single scale becomes the
+/// finest scale of a map with one scale. Throws std::invalid_argument if the records do not form a map; the message
+/// gives the reason.
 GAUSSMAP_API GaussianMap<3> fromRecords(const GaussianRecords& records);
 
-/// Writes such records, and reads them, as the fields that savePcd() names. Throw FileError.
+/// Writes records to a PCD file with the fields of savePcd(). Throws FileError if the file cannot be written.
 GAUSSMAP_API void saveRecordsPcd(const std::filesystem::path& path, const GaussianRecords& records);
+/// Reads records from a PCD file with the fields of savePcd(). Throws FileError if the file is not such a cloud.
 GAUSSMAP_API GaussianRecords loadRecordsPcd(const std::filesystem::path& path);
 
+/// Options of savePcd().
 struct ExportOptions {
-  std::optional<int> scale;  ///< one scale only; nothing: all
-  bool overwrite = false;
+  std::optional<int> scale;  ///< the scale to write; std::nullopt: all scales
+  bool overwrite = false;    ///< replaces an existing file
 };
 
-/// Writes a map, or one scale, as a PCD file with the fields
-/// x y z covariance[6] weight occupancy cell_side scale cell_x cell_y cell_z, readable by PCL and its tools.
-/// Throws FileError if the file exists and may not be replaced, or cannot be written.
+/// Writes a map, or one scale, to a PCD file that PCL and its tools can read.
+///
+/// The fields are x y z covariance[6] weight occupancy cell_side scale cell_x cell_y cell_z. Throws FileError if the
+/// file exists and `overwrite` is not set, or if the file cannot be written.
 GAUSSMAP_API void savePcd(const std::filesystem::path& path, const GaussianMap<3>& map,
                           const ExportOptions& options = {});
 
-/// Reads what saveMapPcd wrote. Throws FileError if the file is no such cloud.
+/// Reads a map from a file of savePcd(). Throws FileError if the file is not a cloud of Gaussians.
 GAUSSMAP_API GaussianMap<3> loadPcd(const std::filesystem::path& path);
 
-/// Does the file begin like an SQLite database, as a .gmap does? False for everything else, missing files included.
+/// Returns true if a file begins like an SQLite database, as a .gmap file does. Returns false for any other file and
+/// for a missing file.
 GAUSSMAP_API bool isGmap(const std::filesystem::path& path);
-/// Does the file hold a .gmap or a cloud of Gaussians?
+/// Returns true if a file is a .gmap file or a cloud of Gaussians.
 GAUSSMAP_API bool isMap(const std::filesystem::path& path);
-/// load or loadPcd, by the first bytes of the file; the metadata of a .gmap on request.
+/// Reads a map from a .gmap file or from a cloud of Gaussians, detected by the first bytes of the file. If `metadata`
+/// is given, it receives the metadata of a .gmap file. Throws like load() and loadPcd().
 GAUSSMAP_API GaussianMap<3> loadAny(const std::filesystem::path& path, MapMetadata* metadata = nullptr);
 
 }  // namespace gaussmap

@@ -15,84 +15,96 @@
 
 namespace gaussmap {
 
-/// One entry of FIELDS.
+/// One field of a PCD file: an entry of FIELDS.
 struct PcdField {
   std::string name;        ///< "_" is padding
-  std::size_t size = 4;    ///< bytes an element
+  std::size_t size = 4;    ///< bytes per element
   char type = 'F';         ///< I, U or F
-  std::size_t count = 1;   ///< elements a point
-  std::size_t offset = 0;  ///< of the first element [bytes], in a record of DATA binary
-  std::size_t column = 0;  ///< of the first element, in a line of DATA ascii
+  std::size_t count = 1;   ///< elements per point
+  std::size_t offset = 0;  ///< of the first element in a record of DATA binary [bytes]
+  std::size_t column = 0;  ///< of the first element in a line of DATA ascii
 };
 
+/// The encoding of the points in a PCD file: DATA ascii, binary or binary_compressed.
 enum class PcdEncoding { Ascii, Binary, BinaryCompressed };
 
-/// What the text part of a PCD file says.
+/// The header of a PCD file.
 struct GAUSSMAP_API PcdHeader {
-  std::vector<PcdField> fields;  ///< in the order of the file; names differ, but for padding
-  std::size_t width = 0;         ///< points a row
-  std::size_t height = 1;        ///< rows: > 1 in an organised cloud
+  std::vector<PcdField> fields;  ///< in the order of the file; all names differ, except padding
+  std::size_t width = 0;         ///< points per row
+  std::size_t height = 1;        ///< number of rows; > 1 for an organised cloud
   std::size_t points = 0;        ///< width * height
-  Pose viewpoint;                ///< the sensor's pose as written: the quaternion may be anything, see poseFault()
-  bool has_viewpoint = false;    ///< false: viewpoint is the identity because the file says nothing
-  PcdEncoding encoding = PcdEncoding::Ascii;
-  std::size_t record_size = 0;  ///< bytes a point in DATA binary
-  std::size_t columns = 0;      ///< numbers a line in DATA ascii
-  std::size_t data_offset = 0;  ///< bytes before the data
-  std::size_t data_line = 0;    ///< number of the first line of data, the file's first line is 1
+  Pose viewpoint;                ///< the sensor's pose as written; the quaternion is not checked, see poseFault()
+  bool has_viewpoint = false;    ///< false: the file has no VIEWPOINT, and `viewpoint` is the identity
+  PcdEncoding encoding = PcdEncoding::Ascii;  ///< of the data
+  std::size_t record_size = 0;                ///< bytes per point in DATA binary
+  std::size_t columns = 0;                    ///< numbers per line in DATA ascii
+  std::size_t data_offset = 0;                ///< bytes before the data
+  std::size_t data_line = 0;                  ///< number of the first line of data; the first line of the file is 1
 
-  /// The field of that name, nullptr if there is none. Padding is not found.
+  /// Returns the field of this name, or nullptr if there is none. Padding is not found.
   const PcdField* find(const std::string& name) const;
 };
 
-/// One number of every point: an element of a field.
+/// Selects one number per point: an element of a field.
 struct PcdColumn {
-  std::string field;
+  std::string field;        ///< name of the field
   std::size_t element = 0;  ///< in [0, count)
 };
 
-/// One open PCD file (versions 0.5 to 0.7; ascii, binary, binary_compressed) with x, y and z as floats or doubles
-/// anywhere in it. No file makes it crash, hang, or ask for more memory than a small multiple of the file's size.
-/// Opening reads the header and checks it against the size of the file, but touches no point: thousands of scans
-/// may be open at once. A file that is made shorter meanwhile raises SIGBUS, see requireWhole().
+/// Reads one PCD file (versions 0.5 to 0.7; ascii, binary, binary_compressed). x, y and z can be floats or doubles at
+/// any place of a record.
+///
+/// No file can make the reader crash, hang, or use more memory than a small multiple of the file's size. Opening reads
+/// the header and checks it against the size of the file, but reads no points. Thousands of scans can therefore be open
+/// at the same time. If a file is truncated while it is open, reading it can raise SIGBUS; see requireWhole().
 class GAUSSMAP_API PcdReader {
  public:
-  /// Throws FileError, with the line of the header or the byte of the file and the way out.
+  /// Opens a file. Throws FileError if the file is not usable; the message gives the line of the header or the byte of
+  /// the file, and what to do.
   explicit PcdReader(const std::filesystem::path& path);
   ~PcdReader();
   PcdReader(PcdReader&&) noexcept;
   PcdReader& operator=(PcdReader&&) noexcept;
 
-  /// Another reader of the same open file, which parses or expands its points for itself.
+  /// Returns another reader of the same open file. It parses or decompresses its points itself.
   PcdReader sameFile() const;
 
+  /// Returns the path of the file.
   const std::filesystem::path& path() const { return path_; }
+  /// Returns the header of the file.
   const PcdHeader& header() const { return header_; }
-  /// Number of points, the invalid ones of an organised cloud included.
+  /// Returns the number of points, including the invalid points of an organised cloud.
   std::size_t size() const { return header_.points; }
 
-  /// Fills the block with points first, first + 1 ... as far as the block or the file goes [m], in the frame of the
-  /// file, NaN and infinity as they are; behind the last point the block is empty. Thread-safe. The first call
-  /// parses an ascii file or expands a compressed one and keeps x, y and z for as long as the reader lives.
-  /// Throws FileError if those data are damaged.
+  /// Fills `block` with the points `first`, `first` + 1 and so on, until the block is full or the file ends.
+  ///
+  /// The points [m] are in the frame of the file. NaN and infinite values are kept. The block is empty if `first` is
+  /// not less than size(). The first call parses an ascii file or decompresses a compressed one; the reader then keeps
+  /// x, y and z in memory. Thread-safe. Throws FileError if the data are damaged.
   void read(std::size_t first, PointBlock<3>& block) const;
-  /// To be called after the last read(): throws FileError if the file was cut off since it was opened, because some of
-  /// the points are then zeros. The calls below check this themselves.
+  /// Throws FileError if the file was truncated after it was opened: some points are then zeros. Call this function
+  /// after the last read(). The functions below check it themselves.
   void requireWhole() const;
 
-  /// The columns asked for, size() numbers each. An element I8 or U8 beyond 2^53 is rounded. Thread-safe.
-  /// Throws FileError if a field or element is missing, is no scalar of 1, 2, 4 or 8 bytes, or the data are damaged.
-  /// Ask for all columns in one call: each call goes once through the file and keeps nothing.
+  /// Returns the selected columns, size() numbers each. Integers of 8 bytes beyond 2^53 are rounded.
+  ///
+  /// Each call reads the file once and keeps nothing, so request all columns in one call. Thread-safe. Throws FileError
+  /// if a field or an element is missing, if it is not a number of 1, 2, 4 or 8 bytes, or if the data are damaged.
   std::vector<std::vector<double>> columns(const std::vector<PcdColumn>& wanted) const;
+  /// Returns one column, size() numbers. It works like columns().
   std::vector<double> column(const std::string& field, std::size_t element = 0) const;
 
-  /// All points with all their fields, size() * header().record_size bytes as in DATA binary: what a program needs that
-  /// hands on fields it does not know. An 8-byte integer beyond 2^53 is rounded if the file is ascii.
-  /// Throws FileError if the data are damaged, or a field of an ascii file is no number gaussmap knows.
+  /// Returns all points with all their fields, size() * header().record_size bytes as in DATA binary. A program can use
+  /// this to copy fields that it does not know.
+  ///
+  /// Integers of 8 bytes beyond 2^53 are rounded if the file is ascii. Throws FileError if the data are damaged, or if
+  /// a field of an ascii file has an unknown type.
   std::vector<char> records() const;
 
-  /// A number that tells clouds apart: of the point count and of some bytes sampled all over the data, so that it
-  /// costs the same for any size. The same for copies of a file, different for the same cloud in another encoding.
+  /// Returns a hash that distinguishes clouds, from the number of points and bytes sampled all over the data. The cost
+  /// does not depend on the size of the file. Copies of a file have the same hash; the same cloud in another encoding
+  /// has a different one.
   std::uint64_t fingerprint() const;
 
  private:

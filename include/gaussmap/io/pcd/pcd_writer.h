@@ -16,17 +16,18 @@
 
 namespace gaussmap {
 
-/// One field of a PCD file and where its values are in memory. The caller keeps the memory alive while writing.
+/// One field of a PCD file and the memory that holds its values. The caller keeps the memory alive during the write.
 struct PcdOutput {
   std::string name;            ///< one word
   char type = 'F';             ///< I, U or F
-  std::size_t size = 4;        ///< bytes a value: 4 or 8 for F, 1, 2, 4 or 8 for I and U
-  std::size_t count = 1;       ///< values a point, side by side in memory
-  const void* data = nullptr;  ///< the values of the first point
-  std::size_t stride = 0;      ///< bytes from one point's values to the next's; 0: size * count
+  std::size_t size = 4;        ///< bytes per value: 4 or 8 for F; 1, 2, 4 or 8 for I and U
+  std::size_t count = 1;       ///< values per point, consecutive in memory
+  const void* data = nullptr;  ///< values of the first point
+  std::size_t stride = 0;      ///< bytes from the values of one point to those of the next; 0: size * count
 };
 
-/// A field from an array: type and size follow from T. `data` holds `count` values per point, or `stride` bytes apart.
+/// Makes a field of an array; type and size follow from T. `data` holds `count` values per point. `stride` is the
+/// number of bytes from point to point; 0: no gaps.
 template <typename T>
 PcdOutput pcdOutput(std::string name, const T* data, std::size_t count = 1, std::size_t stride = 0) {
   static_assert(std::is_arithmetic_v<T> && !std::is_same_v<T, bool> && sizeof(T) <= 8, "no type of PCD");
@@ -34,25 +35,28 @@ PcdOutput pcdOutput(std::string name, const T* data, std::size_t count = 1, std:
   return {std::move(name), type, sizeof(T), count, data, stride};
 }
 
-/// Throws std::invalid_argument, naming the field, for fields that no PCD file can have: no name or blanks in it, the
-/// same name twice, a type and size that there is not, a count of 0. Where the values are does not matter.
+/// Throws std::invalid_argument if a PCD file cannot have these fields: a name is missing, contains blanks or occurs
+/// twice, a type and size do not exist, or a count is 0. The message gives the field. The addresses of the values are
+/// not checked.
 GAUSSMAP_API void checkPcdFields(const std::vector<PcdOutput>& fields);
 
-/// Writes a binary PCD file (version 0.7) with any fields, whole or not at all (AtomicFile): one row of points, or rows
-/// of `width` points if that is not 0.
-/// The same input gives the same bytes. An empty cloud is written too, though PCL refuses to read one.
-/// Throws std::invalid_argument as checkPcdFields(), for a field without data, a pose with a fault, or rows that are
-/// not full; FileError if the file cannot be written.
+/// Writes a binary PCD file (version 0.7) with any fields: one row of points, or rows of `width` points if `width` is
+/// not 0.
+///
+/// The write is atomic, and the same input gives the same bytes. An empty cloud is written as well, although PCL does
+/// not read it. Throws std::invalid_argument like checkPcdFields(), and also if a field has no data, the pose has a
+/// fault, or the last row is not full. Throws FileError if the file cannot be written.
 GAUSSMAP_API void writePcd(const std::filesystem::path& path, std::size_t points, const std::vector<PcdOutput>& fields,
                            const std::optional<Pose>& viewpoint = std::nullopt, std::size_t width = 0);
 
+/// The type of the coordinates in a PCD file.
 enum class PcdPrecision {
-  Float,  ///< F4: what every reader takes; resolves 4 mm at 65 km from the origin, 1 m at 10,000 km
+  Float,  ///< F4: for any reader; resolves 4 mm at 65 km from the origin, 1 m at 10,000 km
   Double  ///< F8: exact; PCL's own point types do not read it
 };
 
-/// Writes points as x y z [m]. NaN is written as it is. Throws as above, and std::invalid_argument, naming the
-/// index, for a coordinate too large for a float.
+/// Writes points as x y z [m] to a binary PCD file. NaN is written as NaN. Throws like writePcd() with fields, and
+/// std::invalid_argument if a coordinate is too large for a float; the message gives the index of the point.
 GAUSSMAP_API void writePcd(const std::filesystem::path& path, const std::vector<Vector<3>>& points,
                            PcdPrecision precision = PcdPrecision::Float,
                            const std::optional<Pose>& viewpoint = std::nullopt);

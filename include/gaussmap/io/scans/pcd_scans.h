@@ -16,17 +16,20 @@ namespace gaussmap {
 
 /// A PCD file and the pose of its sensor.
 struct PcdScan {
-  std::filesystem::path path;
-  Pose pose;                                  ///< unit quaternion
-  std::optional<double> time = std::nullopt;  ///< [s]
+  std::filesystem::path path;                 ///< the file
+  Pose pose;                                  ///< sensor frame to map frame, unit quaternion
+  std::optional<double> time = std::nullopt;  ///< time of the scan [s]; std::nullopt if unknown
 };
 
-/// PCD files as scans. Each file is opened once; the points of an ascii or compressed file are kept only while its
-/// reader lives. The values of the points are the other numbers of the file, fields of several numbers by index:
-/// "intensity", "normal[2]".
+/// PCD files as scans.
+///
+/// Each file is opened once. The points of an ascii or compressed file stay in memory only as long as their reader
+/// exists. The values of the points are the other fields of the file, for example "intensity". Elements of fields with
+/// several numbers have an index: "normal[2]".
 class GAUSSMAP_API PcdScans : public Scans {
  public:
-  /// Opens the files and checks their headers, but for the first ones if they are open already. Throws FileError.
+  /// Opens the files and checks their headers. `opened` can hold readers of the first files if they are already open.
+  /// Throws FileError if a file is not usable.
   explicit PcdScans(std::vector<PcdScan> scans, ScanFrame frame = ScanFrame::Sensor,
                     std::vector<PcdReader> opened = {});
   ~PcdScans() override;
@@ -38,30 +41,35 @@ class GAUSSMAP_API PcdScans : public Scans {
   ScanFrame frame() const override { return frame_; }
   std::unique_ptr<ScanReader> open(std::size_t index) const override;
 
+  /// Returns the list of files.
   const std::vector<PcdScan>& files() const { return scans_; }
-  /// A reader of the file, for what is not in the interface: header, records, columns.
+  /// Returns a reader of a file, for access to its header, records and columns. Throws like open().
   PcdReader reader(std::size_t index) const;
 
  private:
   std::vector<PcdScan> scans_;
-  std::vector<PcdReader> opened_;  // of the first scans: a process can map so many files only
+  std::vector<PcdReader> opened_;  // of the first scans: the number of memory maps per process is limited
   ScanFrame frame_;
 };
 
-/// The files that a list of inputs means: files as they are, directories replaced by the *.pcd in them (in any case,
-/// not recursively, no hidden files) in natural order. The order of the inputs stays. Throws FileError if an input does
-/// not exist or a directory has no such file.
+/// Returns the files of a list of inputs, in the order of the inputs.
+///
+/// A file is listed unchanged. A directory is replaced by the *.pcd files in it, in natural order. The search is not
+/// recursive, ignores case, and skips hidden files. Throws FileError if an input does not exist or a directory has no
+/// such file.
 GAUSSMAP_API std::vector<std::filesystem::path> listScans(const std::vector<std::filesystem::path>& inputs);
 
-/// Scans with poses, and what looks wrong with them.
+/// Scans with poses, and the warnings about them.
 struct FoundScans {
-  PcdScans scans;
-  std::vector<std::string> warnings;  ///< one sentence or two each, with file names and the way out
+  PcdScans scans;                     ///< the scans
+  std::vector<std::string> warnings;  ///< one or two sentences each, with file names and what to do
 };
 
-/// Lists the scans (listScans()), gives each its pose, and checks the poses. The pose of a scan is
-/// its VIEWPOINT, unless `poses` names a pose file (readPoseFile(), posesForScans()). Warns of a scan that is given
-/// twice. Throws FileError if a file cannot be read, is a map, or a pose is unusable.
+/// Lists the scans (see listScans()), assigns the poses, and checks them.
+///
+/// The pose of a scan is its VIEWPOINT, unless `poses` names a pose file (see readPoseFile() and posesForScans()).
+/// There is a warning if a scan is listed twice. Throws FileError if a file cannot be read or is a map, or if a pose is
+/// not usable.
 GAUSSMAP_API FoundScans findScans(const std::vector<std::filesystem::path>& inputs,
                                   const std::filesystem::path& poses = {}, ScanFrame frame = ScanFrame::Sensor);
 

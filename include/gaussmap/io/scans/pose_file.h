@@ -12,29 +12,41 @@
 
 namespace gaussmap {
 
-/// A file of sensor poses in the map frame, one a line; blank lines and lines that start with # do not count:
-///   time x y z qx qy qz qw                      TUM
-///   r11 r12 r13 tx r21 r22 r23 ty r31 ... tz    KITTI, the rows of a 3 x 4 matrix
-///   name x y z qx qy qz qw                      or the twelve numbers of KITTI after the file name of a scan
+/// A file of sensor poses in the map frame, one per line.
+///
+/// Blank lines and lines that start with `#` are ignored. The layouts are:
+///
+///     time x y z qx qy qz qw                      TUM
+///     r11 r12 r13 tx r21 r22 r23 ty r31 ... tz    KITTI: the rows of a 3 x 4 matrix
+///     name x y z qx qy qz qw                      the file name of a scan and a pose
+///     name r11 r12 r13 tx r21 ... tz              the file name of a scan and a matrix
 struct PoseFile {
+  /// One pose of the file.
   struct Entry {
-    std::string name;      ///< first word as written: the time or the scan's file name; empty for KITTI
-    std::size_t line = 0;  ///< in the file, from 1
-    Pose pose;             ///< unit quaternion
+    std::string name;      ///< first word as written: the time, or the file name of the scan; empty for KITTI
+    std::size_t line = 0;  ///< line number, from 1
+    Pose pose;             ///< sensor frame to map frame, unit quaternion
   };
-  std::filesystem::path path;
+  std::filesystem::path path;  ///< the file
   std::vector<Entry> entries;  ///< in the order of the file
-  bool by_name = false;        ///< the first words are file names, the order of the lines means nothing
+  bool by_name = false;        ///< true: the first words are file names, and the order of the lines does not matter
 };
 
-/// Reads a pose file; which of the layouts it has shows in the words of a line and must not change. Throws FileError
-/// with the line: a wrong number of words, numbers that are not finite, a quaternion whose norm is further than
-/// kQuaternionTolerance from 1, a matrix as far from a rotation, the same name twice.
+/// Reads a pose file. The layout follows from the words of a line and must be the same in all lines.
+///
+/// Throws FileError, with the line, in these cases:
+/// - The number of words is wrong, or a number is not finite.
+/// - The norm of a quaternion differs from 1 by more than kQuaternionTolerance, or a matrix differs from a rotation by
+///   as much.
+/// - A name occurs twice.
 GAUSSMAP_API PoseFile readPoseFile(const std::filesystem::path& path);
 
-/// The pose of each scan. By name: the entry named like the scan's file, with or without its extension; entries of
-/// other scans do no harm. Times that are the names of all scans count as names. Otherwise in the order of the file,
-/// which must have as many entries as there are scans. Throws FileError, naming the scan or the numbers.
+/// Returns the pose of each scan.
+///
+/// If the file has names, a scan gets the entry named like its file, with or without extension. Entries of other scans
+/// are ignored. Times that are the names of all scans count as names. Otherwise the poses are in the order of the file,
+/// which must have one entry per scan. Throws FileError if a scan has no pose or the numbers differ; the message gives
+/// the scan or the numbers.
 GAUSSMAP_API std::vector<Pose> posesForScans(const PoseFile& file, const std::vector<std::filesystem::path>& scans);
 
 }  // namespace gaussmap

@@ -20,118 +20,139 @@
 
 namespace gaussmap {
 
-/// How much a point moves the cluster that it falls to.
+/// How far a point moves its cluster.
 enum class LearningRate {
-  SampleMean,  ///< 1 / n: a cluster is the exact moments of its points, in any order
-  Occupancy    ///< Yguel 2009 eq. (5): little where the map has been seen often, more where it is uncertain
+  SampleMean,  ///< 1 / n: a cluster is the exact moments of its points, independent of their order
+  Occupancy    ///< Yguel 2009 eq. (5): slowly where the map was often observed, faster where it is uncertain
 };
 
-/// Which points of a cluster are tested against a range image.
+/// The points of a cluster that are tested against a range image.
 enum class OccupancySamples {
-  Mean,   ///< its mean
-  Random  ///< as many samples from it as pixels may see it, Yguel 2009 eq. (1): the same decisions, but slower
+  Mean,   ///< the mean of the cluster
+  Random  ///< random samples, one per pixel that can see the cluster, Yguel 2009 eq. (1): same decisions, but slower
 };
 
+/// Options of OnlineMapper.
 struct GAUSSMAP_API OnlineOptions {
-  MapOptions map;
-  double max_range = std::numeric_limits<double>::infinity();  ///< farther points are left out [m]
-  LearningRate learning_rate = LearningRate::SampleMean;
+  MapOptions map;                                              ///< cells of the map
+  double max_range = std::numeric_limits<double>::infinity();  ///< points farther from the sensor are ignored [m]
+  LearningRate learning_rate = LearningRate::SampleMean;       ///< how far a point moves its cluster
   double slowest_rate = 5e-4;  ///< eps_min of eq. (5), LearningRate::Occupancy only, in (0, 1]
-  double fastest_rate = 5e-2;  ///< eps_max, at least eps_min, in (0, 1]
+  double fastest_rate = 5e-2;  ///< eps_max of eq. (5), LearningRate::Occupancy only, in [slowest_rate, 1]
 
-  OccupancyOptions occupancy;
-  VisibilityOptions visibility;
-  OccupancySamples samples = OccupancySamples::Mean;
-  std::optional<Projection> projection;     ///< of every scan; nullopt: found, and again when a scan looks different
+  OccupancyOptions occupancy;                         ///< log-odds per hit and per miss
+  VisibilityOptions visibility;                       ///< when a beam passes through a cluster
+  OccupancySamples samples = OccupancySamples::Mean;  ///< which points of a cluster are tested
+  /// Projection of every scan; std::nullopt: determined from the points, and again if a scan does not fit it.
+  std::optional<Projection> projection;
   std::optional<double> no_return_is_free;  ///< pixels without return are free space up to this range [m]
   std::vector<double> max_ranges;  ///< per scale: cells farther from the sensor are not tested [m]; empty: no limit
-  int occupancy_every = 1;         ///< scans, >= 1
-  int look_back = 10;  ///< how many scans are kept: their range images, to test new cells, and their sums; >= 0
+  int occupancy_every = 1;         ///< the occupancy is updated every this many scans, >= 1
+  /// Number of recent scans that are kept, >= 0. Their range images test new cells, and their sums serve `shared`.
+  int look_back = 10;
 
-  bool forget = true;                        ///< delete clusters whose occupancy is below 0 ...
-  double link = MovingCellOptions().link;    ///< ... and the rest of their objects: cells connected to them [m] ...
-  double reach = MovingCellOptions().reach;  ///< ... up to this far away, seen only while they were [m]
-  SharedCellOptions shared;  ///< SampleMean only: also what the last look_back scans saw of them beside a surface
+  /// Deletes clusters with log-odds below 0 and the other cells of their objects (see `link` and `reach`).
+  bool forget = true;
+  double link = MovingCellOptions().link;    ///< cells within this distance of a deleted cell are connected to it [m]
+  double reach = MovingCellOptions().reach;  ///< maximum distance of an object's cells from its deleted cells [m]
+  /// Also deletes the points of an object in cells that it shares with a surface, as far as the last look_back scans
+  /// saw them. LearningRate::SampleMean only.
+  SharedCellOptions shared;
 
-  int refine_every = 10;         ///< scans; 0 = never
-  std::size_t refine_cells = 0;  ///< p, most clusters added to a scale at a time; 0: as many as the budget allows (with
-                                 ///< the paper's 4, a drive of 20 scans ends at a third of its budget)
-  double budget = 3.0;  ///< most Gaussians of a coarse scale after a refinement, as a multiple of its cells, >= 1
-  RefineMethod method = RefineMethod::Agglomerate;
+  int refine_every = 10;  ///< the coarse scales are refined every this many scans; 0 = never
+  /// p, maximum number of clusters added per scale and refinement; 0: as many as the budget allows. With the paper's
+  /// 4, a drive of 20 scans ends at a third of its budget.
+  std::size_t refine_cells = 0;
+  double budget = 3.0;  ///< maximum Gaussians of a coarse scale after a refinement, as a multiple of its cells, >= 1
+  RefineMethod method = RefineMethod::Agglomerate;        ///< how the clusters of a coarse cell are found
   ClusterSeed seed_rule = ClusterSeed::ParentCovariance;  ///< RefineMethod::Insert only
   int threads = 0;                                        ///< 0 = all cores
 
-  /// The system of Yguel 2009 as printed, for `dimensions` = 2 or 3; throws std::invalid_argument for another value.
-  /// - cells: three scales, ratio 10, finest side 0.05 m in 2-D, 0.1 m in 3-D (sec. 6);
-  /// - learning: the rate depends on the occupancy, eq. (5), between 5e-4 and 5e-2, o_max = 10 (sec. 4.4, Algorithm 1);
-  /// - occupancy: B samples per cluster, eq. (1), for every scan in 2-D and every third in 3-D (sec. 4.1, 6);
-  /// - deletion: clusters of low occupancy, and nothing beside them (sec. 5.3);
-  /// - refinement: every 10 scans the p = 4 cells of largest error of each scale get one cluster each, inserted with
-  /// the
-  ///   datum itself as seed (sec. 5.1, 6, Algorithm 2), as long as the budget lasts.
-  /// The paper prints no values for the hit and miss log-odds, the deletion threshold, when a beam passes through a
-  /// point, and the size of the budget: these keep their defaults. Two parts differ from the print: the error of eq.
-  /// (6) has no factor (1 - eps), and refinement may also choose a cell that an earlier scan touched.
+  /// Returns the options of the paper, Yguel 2009, for `dimensions` = 2 or 3.
+  ///
+  /// - Cells: three scales, ratio 10, finest side 0.05 m in 2-D, 0.1 m in 3-D (sec. 6).
+  /// - Learning: the rate depends on the occupancy, eq. (5), between 5e-4 and 5e-2, o_max = 10 (sec. 4.4, Algorithm 1).
+  /// - Occupancy: B samples per cluster, eq. (1), for every scan in 2-D and every third scan in 3-D (sec. 4.1, 6).
+  /// - Deletion: clusters of low occupancy, without the other cells of their objects (sec. 5.3).
+  /// - Refinement: every 10 scans, the p = 4 cells of largest error of each scale get one cluster each, within the
+  ///   budget. The Gaussian of largest distortion itself is the seed (sec. 5.1, 6, Algorithm 2).
+  ///
+  /// The paper does not give all values. These options keep their defaults: the log-odds per hit and miss, the deletion
+  /// threshold, the test whether a beam passes through a point, and the size of the budget. Two details differ from the
+  /// paper: the error of eq. (6) has no factor (1 - eps), and a refinement can also choose cells that an earlier scan
+  /// touched. Throws std::invalid_argument for any other value of `dimensions`.
   static OnlineOptions yguel2009(int dimensions);
 };
 
-/// A deleted cluster and why it was deleted. At the finest scale it may be a part of one: what an object left in a
-/// cell that it shared with a surface.
+/// A deleted cluster and the evidence for its deletion.
+///
+/// At the finest scale, this can be a part of a cluster: the points of an object in a cell that it shared with a
+/// surface.
 template <int D>
 struct RemovedCluster {
-  int scale = 0;
-  Gaussian<D> gaussian;  ///< map frame
-  CellKey<D> key;
-  CellMoments<D> moments;  ///< finest scale under LearningRate::SampleMean: exact, for restore()
-  double log_odds = 0.0;
-  Evidence evidence;
-  std::uint32_t scan = 0;  ///< number of the scan that it was deleted after
+  int scale = 0;           ///< scale of the cluster
+  Gaussian<D> gaussian;    ///< map frame
+  CellKey<D> key;          ///< cell of the cluster
+  CellMoments<D> moments;  ///< exact moments for restore(); finest scale and LearningRate::SampleMean only
+  double log_odds = 0.0;   ///< occupancy at the time of the deletion
+  Evidence evidence;       ///< hits and misses
+  std::uint32_t scan = 0;  ///< number of the scan after which the cluster was deleted
 };
 
-/// What one add() did.
+/// Reports the work of one call of OnlineMapper::add().
 struct OnlineStatistics {
-  PointCounts points;             ///< of the scan
-  std::size_t cells_touched = 0;  ///< finest cells with points
-  std::size_t cells_new = 0;      ///< of them, those not seen before
-  std::size_t cells_tested = 0;   ///< of the coarser scales, what culling looked at
-  std::size_t cells_visited = 0;  ///< of the finest scale, what it left to look at
-  std::size_t deleted = 0;        ///< clusters, of all scales, and parts of clusters
-  std::size_t added = 0;          ///< clusters, by refinement
-  std::vector<double> errors;     ///< per scale, mean error [6] of the cells that refinement looked at; empty if none
-  // Seconds.
-  double update_time = 0.0, image_time = 0.0, look_back_time = 0.0, occupancy_time = 0.0, forget_time = 0.0,
-         refine_time = 0.0;
+  PointCounts points;             ///< accepted and dropped points of the scan
+  std::size_t cells_touched = 0;  ///< finest cells with points of the scan
+  std::size_t cells_new = 0;      ///< touched cells that were not occupied before
+  std::size_t cells_tested = 0;   ///< cells of the coarser scales that the culling tested
+  std::size_t cells_visited = 0;  ///< finest cells that remained after the culling
+  std::size_t deleted = 0;        ///< deleted clusters of all scales, including parts of clusters
+  std::size_t added = 0;          ///< clusters added by the refinement
+  std::vector<double> errors;     ///< per scale: mean error, eq. (6), of the touched cells; empty without refinement
+  double update_time = 0.0,       ///< duration of the update by points [s]
+      image_time = 0.0,           ///< duration of making the range image [s]
+      look_back_time = 0.0,       ///< duration of testing new cells against earlier range images [s]
+      occupancy_time = 0.0,       ///< duration of the occupancy update [s]
+      forget_time = 0.0,          ///< duration of the deletion [s]
+      refine_time = 0.0;          ///< duration of the refinement [s]
 };
 
-/// Builds a map scan by scan, Yguel 2009 sections 3 to 5: points move the clusters that they fall to, range images say
-/// what is there and what is gone, and coarse cells get more clusters where they need them. Memory grows with the
-/// map, not with the scans.
+/// Builds a map scan by scan, Yguel 2009 sec. 3 to 5.
+///
+/// Points move their clusters. Range images show which clusters are still there and which are gone. Coarse cells get
+/// more clusters where they need them. The memory grows with the map, not with the number of scans.
 template <int D>
 class GAUSSMAP_API OnlineMapper {
  public:
+  /// A function that receives a deleted cluster.
   using Removed = std::function<void(const RemovedCluster<D>&)>;
 
-  /// `removed` is told every deleted cluster. Throws std::invalid_argument, naming the option.
+  /// Makes an empty map. `removed` is called for every deleted cluster. Throws std::invalid_argument if an option is
+  /// out of range; the message names the option.
   explicit OnlineMapper(const OnlineOptions& options = {}, Removed removed = {});
   ~OnlineMapper();
   OnlineMapper(OnlineMapper&&) noexcept;
   OnlineMapper& operator=(OnlineMapper&&) noexcept;
 
-  /// One scan. D = 2: the map is the plane z = 0 seen from above, the sensor stands upright. Points that are no
-  /// returns are left out. Throws std::out_of_range, naming the point, if one is too far for 32-bit cells; the scan is
-  /// then not counted.
+  /// Adds one scan to the map. Only returns within max_range are used.
+  ///
+  /// For D = 2 the z axis of the sensor must be vertical, and the points are projected along it into the plane z = 0.
+  /// Throws std::out_of_range if a point lies beyond the range of 32-bit cell indices (the message gives the point);
+  /// the scan is then not counted.
   OnlineStatistics add(Scan scan);
 
-  /// Brings a deleted finest cluster back, as certain as can be: whoever calls this knows that it is there. Throws
-  /// std::invalid_argument for another scale.
+  /// Puts a deleted cluster of the finest scale back, with the maximum log-odds: the caller knows that it is still
+  /// there. Throws std::invalid_argument for a cluster of another scale.
   void restore(const RemovedCluster<D>& removed);
 
-  /// The map as it is now. With LearningRate::SampleMean the finest scale holds exact moments, and every coarse
-  /// cluster is the moment match of the finer ones linked to it.
+  /// Returns a copy of the current map. With LearningRate::SampleMean the finest scale holds exact moments, and every
+  /// coarse cluster is the moment match of its children.
   GaussianMap<D> map() const;
+  /// Returns the number of scans added.
   std::size_t scans() const;
+  /// Returns the options, with the automatic noise filled in.
   const OnlineOptions& options() const;
-  /// Bytes held, about.
+  /// Returns the approximate number of bytes in use.
   std::size_t memoryBytes() const;
 
  private:

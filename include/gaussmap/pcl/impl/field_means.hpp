@@ -16,14 +16,16 @@
 
 namespace gaussmap::detail {
 
-/// Averages the fields of a cloud's points within parts, for pcl::for_each_type. x, y, z and labels are left alone.
+/// Averages the fields of a cloud's points per part, for use with pcl::for_each_type. Does not change x, y, z and
+/// label.
 template <typename PointT>
 class FieldMeans {
  public:
-  /// `from`: the points whose part is in `labels` (-1: in none). `to`: one point a part.
+  /// `from`: the input points; `labels` gives the part of each, or -1. `to`: one point per part.
   FieldMeans(const pcl::PointCloud<PointT>& from, const std::vector<std::int32_t>& labels, pcl::PointCloud<PointT>& to)
       : from_(from), labels_(labels), to_(to) {}
 
+  /// Averages one field, unless it is x, y, z or label.
   template <typename Field>
   void operator()() const {
     using Type = typename pcl::traits::datatype<PointT, Field>::type;
@@ -55,7 +57,7 @@ class FieldMeans {
     for (std::size_t part = 0; part < to_.size(); ++part) {
       std::array<Scalar, kCount> means;
       for (std::size_t k = 0; k < kCount; ++k) {
-        const double mean = sums[part][k] / counts[part][k];  // NaN if there is nothing to average
+        const double mean = sums[part][k] / counts[part][k];  // NaN if no value is finite
         if constexpr (std::is_integral_v<Scalar>)
           means[k] = static_cast<Scalar>(std::lround(mean));
         else

@@ -4,7 +4,7 @@
 #include <pcl/console/print.h>
 #include <pcl/point_types.h>
 #include <pcl/filters/impl/filter.hpp>
-#include <pcl/impl/pcl_base.hpp>  // a user's own point type has no other
+#include <pcl/impl/pcl_base.hpp>  // required for user-defined point types
 
 #include <cmath>
 #include <exception>
@@ -15,7 +15,7 @@
 namespace gaussmap {
 namespace detail {
 
-/// Unit normals for the points that have none, and curvatures, from the cloud that they stand for.
+/// Normalises the normals of `to`. Points without a normal get one, and a curvature, from the surface of `from`.
 template <typename PointT>
 void fillNormals(const pcl::PointCloud<PointT>& from, int threads, pcl::PointCloud<PointT>& to) {
   std::vector<std::size_t> without;

@@ -4,7 +4,7 @@
 #include <pcl/common/transforms.h>
 #include <pcl/console/print.h>
 #include <pcl/type_traits.h>
-#include <pcl/impl/pcl_base.hpp>  // a user's own point type has no other
+#include <pcl/impl/pcl_base.hpp>  // required for user-defined point types
 
 #include <cmath>
 #include <exception>
@@ -22,7 +22,7 @@ GaussianMapRegistration<PointSource, PointTarget, Scalar>::GaussianMapRegistrati
   this->max_iterations_ = options.registration.max_iterations;
   this->transformation_epsilon_ = options.registration.translation * options.registration.translation;
   this->transformation_rotation_epsilon_ = std::cos(options.registration.rotation);
-  this->setSearchMethodTarget(lazy_tree_, true);  // true: align() makes no tree
+  this->setSearchMethodTarget(lazy_tree_, true);  // true: align() builds no tree
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
@@ -31,7 +31,7 @@ void GaussianMapRegistration<PointSource, PointTarget, Scalar>::setInputTarget(c
     PCL_ERROR("[gaussmap::%s::setInputTarget] no cloud\n", this->getClassName().c_str());
     return;
   }
-  Base::setInputTarget(cloud);  // refuses an empty one
+  Base::setInputTarget(cloud);  // prints an error if the cloud is empty
   if (cloud->empty()) return;
   map_.reset();
   map_given_ = false;

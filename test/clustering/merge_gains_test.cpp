@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "clustering/undo_merges.h"
+#include "clustering/merge_gains.h"
 
 #include <gtest/gtest.h>
 
@@ -22,16 +22,16 @@ Dendrogram dendrogramOf(const std::vector<double>& costs_from_the_top) {
 }
 
 std::vector<double> gains(const std::vector<double>& costs_from_the_top) {
-  return gainsOfUndoing(dendrogramOf(costs_from_the_top));
+  return mergeGains(dendrogramOf(costs_from_the_top));
 }
 
-TEST(GainsOfUndoing, AreTheCostsWhereTheyFallFromTheTop) {
+TEST(MergeGains, AreTheCostsWhereTheyFallFromTheTop) {
   EXPECT_TRUE(gains({}).empty());
   EXPECT_EQ(gains({3}), (std::vector<double>{3}));
   EXPECT_EQ(gains({3, 2, 2, -1}), (std::vector<double>{3, 2, 2, -1}));
 }
 
-TEST(GainsOfUndoing, ShareTheDearMergeWithTheCheapOnesBeforeIt) {
+TEST(MergeGains, ShareTheDearMergeWithTheCheapOnesBeforeIt) {
   EXPECT_EQ(gains({1, 5}), (std::vector<double>{3, 3}));
   EXPECT_EQ(gains({4, 1, 1, 7, 2}), (std::vector<double>{4, 3, 3, 3, 2}));
   EXPECT_EQ(gains({4, 1, 1, 13, 2}), (std::vector<double>{4.75, 4.75, 4.75, 4.75, 2}));

@@ -10,11 +10,11 @@
 
 namespace gaussmap::detail {
 
-/// MapScale::first_child of the cells of scale s: which cells of scale s - 1 lie under each of them, none under some
-/// perhaps. Both in key order. Throws std::invalid_argument, naming it, if a parent is missing.
+/// MapScale::first_child of the cells of scale s: which cells of scale s - 1 lie under each of them, possibly none.
+/// Both in key order. Throws std::invalid_argument that names a parent which is missing.
 template <int D>
-std::vector<std::uint32_t> linkCells(const std::vector<CellKey<D>>& finer, const std::vector<CellKey<D>>& coarse,
-                                     const Grid<D>& grid, int s) {
+std::vector<std::uint32_t> childLinks(const std::vector<CellKey<D>>& finer, const std::vector<CellKey<D>>& coarse,
+                                      const Grid<D>& grid, int s) {
   std::vector<std::uint32_t> first_child = {0};
   std::size_t child = 0;
   for (const CellKey<D>& key : coarse) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "io/gmap/gain_threshold.h"
+#include "io/gmap/largest_gains.h"
 
 #include <cstdint>
 #include <cstring>

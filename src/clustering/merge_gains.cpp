@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "clustering/undo_merges.h"
+#include "clustering/merge_gains.h"
 
 #include <queue>
 
@@ -18,7 +18,7 @@ struct StandingMerge {
 
 }  // namespace
 
-std::vector<double> gainsOfUndoing(const Dendrogram& dendrogram) {
+std::vector<double> mergeGains(const Dendrogram& dendrogram) {
   struct Block {
     double sum;
     std::size_t size;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "io/gmap/cut_tiles.h"
+#include "io/gmap/make_tiles.h"
 
 #include "io/gmap/map_schema.h"
 
 namespace gaussmap::detail {
 
 template <int D>
-std::map<CellKey<D>, std::vector<IndexRange>> tilesOf(const MapScale<D>& scale, std::int32_t span) {
+std::map<CellKey<D>, std::vector<IndexRange>> cellsByTile(const MapScale<D>& scale, std::int32_t span) {
   std::map<CellKey<D>, std::vector<IndexRange>> tiles;
   for (std::size_t cell = 0; cell < scale.keys.size(); ++cell) {
     std::vector<IndexRange>& runs = tiles[tileOf<D>(scale.keys[cell], span)];
@@ -19,7 +19,7 @@ std::map<CellKey<D>, std::vector<IndexRange>> tilesOf(const MapScale<D>& scale, 
 }
 
 template <int D>
-Tile<D> cutTile(const GaussianMap<D>& map, int s, const std::vector<IndexRange>& runs) {
+Tile<D> makeTile(const GaussianMap<D>& map, int s, const std::vector<IndexRange>& runs) {
   const MapScale<D>& scale = map.scale(s);
   Tile<D> tile;
   for (const IndexRange& run : runs)
@@ -40,9 +40,9 @@ Tile<D> cutTile(const GaussianMap<D>& map, int s, const std::vector<IndexRange>&
   return tile;
 }
 
-#define GAUSSMAP_INSTANTIATE(D)                                                                        \
-  template std::map<CellKey<D>, std::vector<IndexRange>> tilesOf<D>(const MapScale<D>&, std::int32_t); \
-  template Tile<D> cutTile<D>(const GaussianMap<D>&, int, const std::vector<IndexRange>&);
+#define GAUSSMAP_INSTANTIATE(D)                                                                            \
+  template std::map<CellKey<D>, std::vector<IndexRange>> cellsByTile<D>(const MapScale<D>&, std::int32_t); \
+  template Tile<D> makeTile<D>(const GaussianMap<D>&, int, const std::vector<IndexRange>&);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)
 #undef GAUSSMAP_INSTANTIATE

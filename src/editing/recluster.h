@@ -11,30 +11,30 @@
 
 namespace gaussmap::detail {
 
-/// What a coarse scale is made from when cells have changed and old clusters shall live on in them.
+/// What a coarse scale is rebuilt from after its cells have changed, so that its old clusters are kept where possible.
 template <int D>
-struct Regrouping {
+struct ReclusterInput {
   MapScale<D>& finer;   ///< the scale below, in its new cells
   const Grid<D>& grid;  ///< of the new cells
   int scale;            ///< the one to be made
-  /// Of each finer Gaussian, the old cluster that it comes from.
+  /// Of each finer Gaussian, the old cluster that it belonged to.
   const std::vector<std::uint32_t>& group;
-  /// Of each finer Gaussian, the finest cells that it stands for.
+  /// Of each finer Gaussian, the number of occupied finest cells that it represents.
   const std::vector<double>& areas;
   int threads;
 };
 
-/// A new coarse scale: the finer Gaussians of a cell that come from one old cluster are a cluster again, the exact
-/// moment match of them; then clusters of a cell are merged as `cut` says, which is asked with the scale as it is by
-/// then and the areas of its clusters.
+/// A new coarse scale. The finer Gaussians of a cell that belonged to one old cluster become one cluster, their exact
+/// moment match. Then clusters of a cell are merged as `cut` says, which gets that scale and the areas of its clusters.
 template <int D>
-struct Regrouped {
+struct ReclusterResult {
   MapScale<D> scale;                 ///< without parents
   std::vector<std::uint32_t> group;  ///< of each of its clusters: the old one that most of its weight was in
   std::vector<double> areas;         ///< of its clusters
 };
 template <int D>
-Regrouped<D> regroup(const Regrouping<D>& from,
-                     const std::function<ClusterCut(const MapScale<D>&, const std::vector<double>& areas)>& cut);
+ReclusterResult<D> recluster(
+    const ReclusterInput<D>& from,
+    const std::function<ClusterCut(const MapScale<D>&, const std::vector<double>& areas)>& cut);
 
 }  // namespace gaussmap::detail

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "map/near_cells.h"
+#include "map/neighbour_keys.h"
 
 #include <gtest/gtest.h>
 

@@ -11,10 +11,10 @@ namespace gaussmap::detail {
 
 /// Which cells of a scale lie in which tile: runs of cells in key order.
 template <int D>
-std::map<CellKey<D>, std::vector<IndexRange>> tilesOf(const MapScale<D>& scale, std::int32_t span);
+std::map<CellKey<D>, std::vector<IndexRange>> cellsByTile(const MapScale<D>& scale, std::int32_t span);
 
-/// These cells of scale s as a tile.
+/// A tile of these cells of scale s.
 template <int D>
-Tile<D> cutTile(const GaussianMap<D>& map, int s, const std::vector<IndexRange>& runs);
+Tile<D> makeTile(const GaussianMap<D>& map, int s, const std::vector<IndexRange>& runs);
 
 }  // namespace gaussmap::detail

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "editing/regroup.h"
+#include "editing/recluster.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "map/areas.h"
+#include "map/occupied_areas.h"
 
 namespace gaussmap::detail {
 namespace {
@@ -32,9 +32,10 @@ ClusterCut cutByGroup(const ScalePair<D>& pair, const std::vector<std::uint32_t>
 }  // namespace
 
 template <int D>
-Regrouped<D> regroup(const Regrouping<D>& from,
-                     const std::function<ClusterCut(const MapScale<D>&, const std::vector<double>& areas)>& cutOf) {
-  Regrouped<D> result{coarsen(from.finer, from.grid, from.scale - 1), {}, {}};
+ReclusterResult<D> recluster(
+    const ReclusterInput<D>& from,
+    const std::function<ClusterCut(const MapScale<D>&, const std::vector<double>& areas)>& cutOf) {
+  ReclusterResult<D> result{coarsen(from.finer, from.grid, from.scale - 1), {}, {}};
   MapScale<D>& coarse = result.scale;
   const ScalePair<D> pair{from.finer, coarse, from.grid, from.scale - 1};
   // The old clusters serve as parents until the new ones are made.
@@ -48,9 +49,9 @@ Regrouped<D> regroup(const Regrouping<D>& from,
   return result;
 }
 
-#define GAUSSMAP_INSTANTIATE(D)                          \
-  template Regrouped<D> regroup<D>(const Regrouping<D>&, \
-                                   const std::function<ClusterCut(const MapScale<D>&, const std::vector<double>&)>&);
+#define GAUSSMAP_INSTANTIATE(D)             \
+  template ReclusterResult<D> recluster<D>( \
+      const ReclusterInput<D>&, const std::function<ClusterCut(const MapScale<D>&, const std::vector<double>&)>&);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)
 #undef GAUSSMAP_INSTANTIATE

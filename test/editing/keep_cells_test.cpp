@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "editing/thin_map.h"
+#include "editing/keep_cells.h"
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ template <int D>
 void expectWhatStaysToBeAsItWas(const GaussianMap<D>& map) {
   Random random(8);
   const auto keep = randomCells(map, random);
-  const GaussianMap<D> thin = thinMap(map, keep);
+  const GaussianMap<D> thin = keepCells(map, keep);
   for (int s = 0; s < map.scales(); ++s) {
     std::size_t cells = 0;
     double weight = 0.0;
@@ -58,21 +58,21 @@ void expectWhatStaysToBeAsItWas(const GaussianMap<D>& map) {
   }
 }
 
-TEST(ThinMap, LeavesWhatStaysAsItWas) {
+TEST(KeepCells, LeavesWhatStaysAsItWas) {
   const GaussianMapOctree map = build<3>(randomCloud<3>(4000, 71), {0.1, 3, 4, 0.0});
   expectWhatStaysToBeAsItWas<3>(map);
   expectWhatStaysToBeAsItWas<3>(refine<3>(map).map);
 }
 
-TEST(ThinMap, LeavesWhatStaysAsItWasInThePlane) {
+TEST(KeepCells, LeavesWhatStaysAsItWasInThePlane) {
   expectWhatStaysToBeAsItWas<2>(build<2>(randomCloud<2>(3000, 72), {0.1, 4, 3, 0.0}));
 }
 
-TEST(ThinMap, OfAllCellsIsTheMap) {
+TEST(KeepCells, OfAllCellsIsTheMap) {
   const GaussianMapOctree map = refine<3>(build<3>(randomCloud<3>(2000, 73), {0.1, 4, 3, 0.0})).map;
   std::vector<std::vector<char>> all;
   for (int s = 0; s < 3; ++s) all.emplace_back(map.cellCount(s), true);
-  test::expectSameMap<3>(thinMap<3>(map, all), map);
+  test::expectSameMap<3>(keepCells<3>(map, all), map);
 }
 
 }  // namespace

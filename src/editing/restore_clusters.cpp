@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "editing/restore.h"
+#include "editing/restore_clusters.h"
 
 #include <algorithm>
 #include <optional>
@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/number_text.h"
+#include "gaussmap/core/cell_moments.h"
 #include "gaussmap/mapping/build.h"
 #include "gaussmap/mapping/refine.h"
 #include "map/inherit_occupancy.h"
@@ -14,9 +15,6 @@
 namespace gaussmap::detail {
 namespace {
 
-constexpr std::int64_t kMostPointsOfACell = (std::int64_t{1} << 33) - 1;  // see CellMoments
-
-/// The shortest decimal number that is read as the same value.
 /// Throws unless the sums of a finest cluster belong to its cell in such a grid.
 void checkSums(const RemovedCluster<3>& one, const Grid<3>& grid) {
   const std::string name = "the cluster of cell " + toString<3>(one.key);
@@ -44,7 +42,7 @@ MomentGrid<3> sumsOf(const GaussianMap<3>& map, const std::vector<RemovedCluster
     checkSums(one, map.grid());
     if (!isInside(one.gaussian.mean)) continue;
     most += one.moments.count;
-    if (most > kMostPointsOfACell) throw std::invalid_argument("too many points for one cell");
+    if (most > CellMoments<3>::kMaxPoints) throw std::invalid_argument("too many points for one cell");
     sums.add(one.key, one.moments);
     ++clusters;
   }
@@ -80,7 +78,7 @@ GaussianMap<3> rebuilt(const MomentGrid<3>& sums, const GaussianMap<3>& old, int
 
 RestoredMap restoreClusters(const GaussianMap<3>& map, const std::vector<RemovedCluster<3>>& removed,
                             const std::function<bool(const Vector<3>&)>& isInside, int threads) {
-  if (!map.canGrow()) throw std::invalid_argument("restore: the map has no moments");
+  if (!map.acceptsScans()) throw std::invalid_argument("restore: the map has no moments");
   RestoredMap restored;
   const MomentGrid<3> sums = sumsOf(map, removed, isInside, restored.clusters);
   restored.points = sums.pointCount() - static_cast<std::int64_t>(map.weight(0));

@@ -10,9 +10,9 @@
 namespace gaussmap::detail {
 
 /// So far cells are looked for, at most [cells]. It takes the cube of it.
-constexpr double kMostCells = 1000.0;
+constexpr double kMaxCells = 1000.0;
 
-/// How many cells a distance [m] is, at least one. The distance is at most kMostCells cells.
+/// How many cells a distance [m] is, at least one. The distance is at most kMaxCells cells.
 inline std::int32_t cellsFor(double distance, double resolution) {
   return static_cast<std::int32_t>(std::fmax(1.0, std::round(distance / resolution)));
 }

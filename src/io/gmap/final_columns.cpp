@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "io/gmap/finished_columns.h"
+#include "io/gmap/final_columns.h"
 
 #include <algorithm>
 #include <cmath>
@@ -56,7 +56,8 @@ void readNumbers(ColumnReader& columns, std::size_t count, int least_width, cons
 }  // namespace
 
 template <int D>
-void writeFinished(std::string& bytes, const Tile<D>& tile, const TileAddress<D>& address, const MapOptions& options) {
+void writeFinalColumns(std::string& bytes, const Tile<D>& tile, const TileAddress<D>& address,
+                       const MapOptions& options) {
   const std::size_t cells = tile.keys.size(), gaussians = tile.gaussianCount();
   std::vector<QuantisedGaussian<D>> numbers;
   numbers.reserve(gaussians);
@@ -83,8 +84,8 @@ void writeFinished(std::string& bytes, const Tile<D>& tile, const TileAddress<D>
 }
 
 template <int D>
-Tile<D> readFinished(const char* bytes, std::size_t size, const FinishedContents& contents,
-                     const TileAddress<D>& address, const MapOptions& options) {
+Tile<D> readFinalColumns(const char* bytes, std::size_t size, const FinalContents& contents,
+                         const TileAddress<D>& address, const MapOptions& options) {
   const std::uint64_t cells = contents.cells, gaussians = contents.gaussians;  // a binding cannot be captured
   if (gaussians > size / kNumbers<D> || cells > gaussians) throw std::runtime_error("shorter than its cells need");
   ColumnReader columns(bytes, size);
@@ -117,7 +118,7 @@ Tile<D> readFinished(const char* bytes, std::size_t size, const FinishedContents
     readNumbers(columns, gaussians, 1, [&](std::size_t i, std::int64_t number) { numbers[i].lower[slot] = number; });
   const double side = Grid<D>(options).side(address.scale);
   tile.gaussians.reserve(gaussians);
-  for (const QuantisedGaussian<D>& one : numbers) tile.gaussians.push_back(restore<D>(one, options.noise, side));
+  for (const QuantisedGaussian<D>& one : numbers) tile.gaussians.push_back(dequantise<D>(one, options.noise, side));
 
   if (contents.has_labels) {
     tile.labels.resize(gaussians);
@@ -130,16 +131,16 @@ Tile<D> readFinished(const char* bytes, std::size_t size, const FinishedContents
   if (contents.has_log_odds) {
     tile.log_odds.resize(gaussians);
     readNumbers(columns, gaussians, 0,
-                [&](std::size_t i, std::int64_t number) { tile.log_odds[i] = restoreLogOdds(number); });
+                [&](std::size_t i, std::int64_t number) { tile.log_odds[i] = dequantiseLogOdds(number); });
   }
   if (columns.left() > 0) throw std::runtime_error("its size does not fit its cells");
   return tile;
 }
 
-#define GAUSSMAP_INSTANTIATE(D)                                                                              \
-  template void writeFinished<D>(std::string&, const Tile<D>&, const TileAddress<D>&, const MapOptions&);    \
-  template Tile<D> readFinished<D>(const char*, std::size_t, const FinishedContents&, const TileAddress<D>&, \
-                                   const MapOptions&);
+#define GAUSSMAP_INSTANTIATE(D)                                                                               \
+  template void writeFinalColumns<D>(std::string&, const Tile<D>&, const TileAddress<D>&, const MapOptions&); \
+  template Tile<D> readFinalColumns<D>(const char*, std::size_t, const FinalContents&, const TileAddress<D>&, \
+                                       const MapOptions&);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)
 #undef GAUSSMAP_INSTANTIATE

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "editing/thin_map.h"
+#include "editing/keep_cells.h"
 
 #include <cstdint>
 #include <utility>
@@ -9,10 +9,10 @@
 namespace gaussmap::detail {
 namespace {
 
-/// What stays of a scale. `places` = where the Gaussians of the next coarser scale stand now; then those of this one.
+/// What is kept of a scale. `places` = the new indices of the Gaussians of the next coarser scale; then of this one.
 template <int D>
-MapScale<D> thinScale(const GaussianMap<D>& map, int s, const std::vector<char>& keep,
-                      std::vector<std::uint32_t>& places) {
+MapScale<D> keepCellsOfScale(const GaussianMap<D>& map, int s, const std::vector<char>& keep,
+                             std::vector<std::uint32_t>& places) {
   const MapScale<D>& old = map.scale(s);
   MapScaleBuilder<D> thin;
   std::vector<std::uint32_t> own_places(map.gaussianCount(s), 0);
@@ -29,10 +29,10 @@ MapScale<D> thinScale(const GaussianMap<D>& map, int s, const std::vector<char>&
   return thin.take();
 }
 
-/// Counts the children that stay of the cells that stay.
+/// MapScale::first_child of the cells that are kept.
 template <int D>
-std::vector<std::uint32_t> childrenThatStay(const GaussianMap<D>& map, int s, const std::vector<char>& keep,
-                                            const std::vector<char>& keep_finer) {
+std::vector<std::uint32_t> keptChildren(const GaussianMap<D>& map, int s, const std::vector<char>& keep,
+                                        const std::vector<char>& keep_finer) {
   std::vector<std::uint32_t> first_child = {0};
   for (std::size_t cell = 0; cell < keep.size(); ++cell) {
     if (!keep[cell]) continue;
@@ -47,18 +47,18 @@ std::vector<std::uint32_t> childrenThatStay(const GaussianMap<D>& map, int s, co
 }  // namespace
 
 template <int D>
-GaussianMap<D> thinMap(const GaussianMap<D>& map, const std::vector<std::vector<char>>& keep) {
+GaussianMap<D> keepCells(const GaussianMap<D>& map, const std::vector<std::vector<char>>& keep) {
   std::vector<MapScale<D>> scales(keep.size());
   std::vector<std::uint32_t> places;
   for (int s = map.scales() - 1; s >= 0; --s) {
     const auto at = static_cast<std::size_t>(s);
-    scales[at] = thinScale<D>(map, s, keep[at], places);
-    if (s > 0) scales[at].first_child = childrenThatStay<D>(map, s, keep[at], keep[at - 1]);
+    scales[at] = keepCellsOfScale<D>(map, s, keep[at], places);
+    if (s > 0) scales[at].first_child = keptChildren<D>(map, s, keep[at], keep[at - 1]);
   }
   return GaussianMap<D>(map.options(), std::move(scales));
 }
 
-template GaussianMap<2> thinMap<2>(const GaussianMap<2>&, const std::vector<std::vector<char>>&);
-template GaussianMap<3> thinMap<3>(const GaussianMap<3>&, const std::vector<std::vector<char>>&);
+template GaussianMap<2> keepCells<2>(const GaussianMap<2>&, const std::vector<std::vector<char>>&);
+template GaussianMap<3> keepCells<3>(const GaussianMap<3>&, const std::vector<std::vector<char>>&);
 
 }  // namespace gaussmap::detail
