@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs the Debian packages that gaussmap is built and tested with. Works as root or through sudo,
-# says what it does, and does nothing when all are there. Usage: cmake/install-deps.sh [--checks]
+# says what it does, and does nothing when all are there. Usage: cmake/install-deps.sh [--checks | --docs]
 set -euo pipefail
 
 packages=(
@@ -15,8 +15,13 @@ packages=(
 )
 case "${1:-}" in
   "") ;;
-  --checks) packages+=(git clang libclang-rt-14-dev clang-format clang-tidy cppcheck) ;;  # sanitizers, fuzzers, lint
-  *) echo "usage: cmake/install-deps.sh [--checks]" >&2; exit 2 ;;
+  --checks)  # sanitizers, fuzzers, lint, the Python reader of maps
+    packages+=(git clang libclang-rt-14-dev clang-format clang-tidy cppcheck python3-numpy python3-zstandard)
+    ;;
+  --docs)  # the site: not what gaussmap is built with
+    packages=(doxygen python3-sphinx python3-breathe python3-myst-parser python3-sphinx-copybutton python3-sphinx-rtd-theme)
+    ;;
+  *) echo "usage: cmake/install-deps.sh [--checks | --docs]" >&2; exit 2 ;;
 esac
 
 missing=()

@@ -1,57 +1,46 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Measures everything, rewrites test/benchmark/RESULTS.md and the table of the README. Needs python3, and pcl-tools for
-# the whole commands.
-# Usage: test/benchmark/results.sh BUILD DATA [speed]
-#   (BUILD configured with -DGAUSSMAP_BUILD_BENCHMARKS=ON; speed: only the table beside the peers)
+# Measures everything and rewrites the tables of README.md, docs/*.md and test/benchmark/RESULTS.md: see readme_table.py.
+# Needs python3, and pcl-tools for the whole commands. What was measured stays in BUILD/figures.
+# Usage: test/benchmark/results.sh BUILD DATA [speed | accuracy | large | tables]
+#   BUILD     configured with -DGAUSSMAP_BUILD_BENCHMARKS=ON; DATA: a folder with the data sets
+#   speed     only the times beside peers
+#   accuracy  only distances: refinement, real scans, compressed, merged and simplified maps, filters
+#   large     only the map larger than memory (60 M points, 2 GB)
+#   tables    measures nothing: writes the tables of what BUILD/figures has
 set -euo pipefail
-(($# == 2)) || [[ $# == 3 && $3 == speed ]] || { sed -n '3,6p' "$0" >&2; exit 2; }
+what=${3:-all}
+{ (($# == 2 || $# == 3)) && [[ $what =~ ^(all|speed|accuracy|large|tables)$ ]]; } || { sed -n '5,10p' "$0" | cut -c3- >&2; exit 2; }
 build=$1 data=$2
 here=$(dirname "$0")
-new=$(mktemp)
-trap 'rm -f "$new"' EXIT
-accuracy() {
-  cat <<'TEXT'
-# Measured
+gaussmap=$build/apps/gaussmap benchmark=$build/test/benchmark/gaussmap_benchmark figures=$build/figures
+mkdir -p "$figures"
 
-Written by `test/benchmark/results.sh BUILD DATA`; no figure is typed by hand. Times are of a machine with two cores;
-compare ratios, not seconds.
+part() { [[ $what == "$1" || $what == all ]]; }
+as_text() { echo '```text'; cat; echo '```'; }  # plain text in Markdown
 
-## Beside its peers
-
-`gaussmap_benchmark table --growth --data DATA`: everything in the same run, every measurement in a process of its own;
-the fastest of five runs in random order (three with more than ten million points, one on line; of registration the mean
-of all starts). The README has the shorter half of this table.
-
-<!-- benchmark: begin -->
-<!-- benchmark: end -->
-
-## Refinement: accuracy at equal numbers of Gaussians
-
-`gaussmap_benchmark refinement-table --data DATA`: distances [m] from samples of the coarsest scale (100,000 by volume, at least 30
-a Gaussian, within the box of its finest cells) to the truth, and the mean the other way; means of three seeds, the worst
-in brackets. 'Paper's method' is Algorithm 2 as printed, 'parent seed' puts the new cluster at the same datum, but with
-the covariance of the cluster that it leaves. 'Uniform grid' has one Gaussian in each of as many cells. The plain street
-has the same kinds of things as the simulated street, but fewer trees and cars and no relief on the fronts.
-
-TEXT
-  "$build/test/benchmark/gaussmap_benchmark" refinement-table --data "$data"
-  cat <<'TEXT'
-
-## Maps of real scans
-
-`test/benchmark/datasets.sh BUILD/apps/gaussmap BUILD/test/benchmark/gaussmap_benchmark DATA`: distances [m, feet for
-autzen] between samples of the map (100,000 by volume, at least 30 a Gaussian) and the merged cloud it was made of;
-budget 1 = one Gaussian per cell, 3 = refined to three times as many. Bytes are compressed tiles of the scale. The sum
-of weights is the number of accepted points at every scale (the script stops if not).
-
-TEXT
-  "$here/datasets.sh" "$build/apps/gaussmap" "$build/test/benchmark/gaussmap_benchmark" "$data"
-}
-if (($# == 2)); then
-  accuracy >"$new"
-  cp "$new" "$here/RESULTS.md"
+if part speed; then
+  "$benchmark" table --growth --data "$data" --json "$figures/table.json"
 fi
-"$build/test/benchmark/gaussmap_benchmark" table --growth --data "$data" --json "$new"
-"$here/readme_table.py" "$new" "$here/RESULTS.md"
-"$here/readme_table.py" "$new" "$here/../../README.md" "20.0 M" "0.1 m" compressed
+if part accuracy; then
+  "$benchmark" refinement-table --data "$data" --json "$figures/refinement.json" | sed '/^### Overview/,$d' >"$figures/refinement.md"
+  "$benchmark" filters "$data"/{kitti_6scans,rgbd_office_single,mulran_kaist03_21scans} --json "$figures/filters.json"
+  "$here/compress.sh" "$gaussmap" >"$figures/compress.md"
+  "$here/merge.sh" "$gaussmap" merge "$data/mulran_kaist03_21scans" "$data/mulran_kaist03_21scans/trajectory.tum" |
+    sed -n '/^95 %/,/^scale 2/p' | as_text >"$figures/merge.md"
+  "$here/merge.sh" "$gaussmap" simplify "$data/kitti_6scans" "$data/kitti_6scans" | sed -n '/^95 %/,$p' |
+    as_text >"$figures/simplify.md"
+  "$here/datasets.sh" "$gaussmap" "$benchmark" "$data" >"$figures/datasets.md"
+fi
+if part large; then
+  "$here/tiles.sh" "$build" | as_text >"$figures/tiles.md"
+fi
+
+arguments=()
+for file in "$figures"/*.json; do
+  [[ ! -e $file ]] || arguments+=("--$(basename "$file" .json)" "$file")
+done
+for file in "$figures"/*.md; do
+  [[ ! -e $file ]] || arguments+=(--text "$(basename "$file" .md)=$file")
+done
+"$here/readme_table.py" "${arguments[@]}" "$here/../../README.md" "$here/RESULTS.md" "$here"/../../docs/*.md
