@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs the Debian packages that are needed to build and test gaussmap, as root or through sudo. Prints the packages
-# that it installs, and does nothing if all are installed. Usage: cmake/install-deps.sh [--checks]
+# that it installs, and does nothing if all are installed. Usage: cmake/install-deps.sh [--checks | --docs]
 set -euo pipefail
 
 packages=(
@@ -15,9 +15,14 @@ packages=(
 )
 case "${1:-}" in
   "") ;;
-  --checks) packages+=(git clang libclang-rt-14-dev clang-format clang-tidy cppcheck  # sanitizers, fuzzers, lint
-                        mandoc zsh fish) ;;  # man pages and completions
-  *) echo "usage: cmake/install-deps.sh [--checks]" >&2; exit 2 ;;
+  --checks)  # sanitizers, fuzzers, lint; the tests of man pages, completions and of the Python reader of maps
+    packages+=(git clang libclang-rt-14-dev clang-format clang-tidy cppcheck
+               mandoc zsh fish python3-numpy python3-zstandard)
+    ;;
+  --docs)  # only what docs/build.sh needs
+    packages=(doxygen python3-sphinx python3-breathe python3-myst-parser python3-sphinx-copybutton python3-sphinx-rtd-theme)
+    ;;
+  *) echo "usage: cmake/install-deps.sh [--checks | --docs]" >&2; exit 2 ;;
 esac
 
 missing=()

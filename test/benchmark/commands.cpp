@@ -17,12 +17,12 @@ bool isInstalled(const std::string& program) {
 }
 
 void compare(const std::string& part, const std::string& input, const std::vector<Command>& commands, int runs,
-             Table& table) {  // ours with one thread, with two, the peer's
+             Table& table) {  // commands: gaussmap with one thread, with two, the peer
   const std::vector<Measured> of = measureCommandsInTurn(commands, runs);
   for (int threads = 1; threads <= 2; ++threads) {
     const Measured& own = of[static_cast<std::size_t>(threads) - 1];
     table.add(Row{part, input, threads, own.seconds, own.megabytes, commands.back().front(), of.back().seconds,
-                  of.back().megabytes, 0.0});
+                  of.back().megabytes});
   }
 }
 

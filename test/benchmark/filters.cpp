@@ -88,7 +88,7 @@ class Comparison {
  private:
   /// The leaf size with which pcl::VoxelGrid keeps about so many points.
   static double leafFor(const NamedCloud& input, double share, double extent) {
-    const auto wanted = double(input.cloud->size()) * share;
+    const auto target = double(input.cloud->size()) * share;
     double small = extent / 2000.0, large = extent;
     for (int i = 0; i < 12; ++i) {
       const double leaf = std::sqrt(small * large);
@@ -97,7 +97,7 @@ class Comparison {
       voxels.setInputCloud(input.cloud);
       Cloud kept;
       voxels.filter(kept);
-      (double(kept.size()) > wanted ? small : large) = leaf;
+      (double(kept.size()) > target ? small : large) = leaf;
     }
     return large;
   }

@@ -23,7 +23,7 @@ Cloud::Ptr spread(const Cloud& drive) {
   return wide;
 }
 
-/// values ~ a x + b y, least squares of the relative errors; `worst` = the largest of these that is left.
+/// values ~ a x + b y, least squares of the relative errors; `worst` = the largest relative error of the fit.
 struct Fit {
   double a = 0.0, b = 0.0, worst = 0.0;
 };
@@ -48,7 +48,7 @@ void grow(const char* name, const std::vector<std::size_t>& counts, bool is_wide
       return static_cast<double>(build<3>(sums, {0.2, 5, 3, 0.0}).cellCount(0));
     };
     const Measured measured = measureInTurn({work}, 3).front();
-    std::printf("growth, %s: %zu points, %.0f cells, %.3f s, %.1f ns a point, %.1f MB, %.0f bytes a cell\n", name,
+    std::printf("growth, %s: %zu points, %.0f cells, %.3f s, %.1f ns per point, %.1f MB, %.0f bytes per cell\n", name,
                 count, measured.value, measured.seconds, 1e9 * measured.seconds / static_cast<double>(count),
                 measured.megabytes, measured.megabytes * 1048576.0 / measured.value);
     std::fflush(stdout);
@@ -59,19 +59,19 @@ void grow(const char* name, const std::vector<std::size_t>& counts, bool is_wide
   }
   if (counts.size() < 3) return;
   const Fit time = fit(points, cells, seconds);
-  table.add(Figure{"growth, time", name, "a point", "ns", 1e9 * time.a, 0.0});
-  table.add(Figure{"growth, time", name, "a cell", "ns", 1e9 * time.b, 0.0});
-  table.add(Figure{"growth, time", name, "farthest from this line", "%", 100.0 * time.worst, 0.0});
+  table.add(Figure{"growth, time", name, "per point", "ns", 1e9 * time.a});
+  table.add(Figure{"growth, time", name, "per cell", "ns", 1e9 * time.b});
+  table.add(Figure{"growth, time", name, "largest deviation from the fit", "%", 100.0 * time.worst});
   const Fit memory = fit(cells, std::vector<double>(cells.size(), 1.0), megabytes);
-  table.add(Figure{"growth, memory", name, "a cell", "bytes", 1048576.0 * memory.a, 0.0});
-  table.add(Figure{"growth, memory", name, "besides", "MB", memory.b, 0.0});
-  table.add(Figure{"growth, memory", name, "farthest from this line", "%", 100.0 * memory.worst, 0.0});
+  table.add(Figure{"growth, memory", name, "per cell", "bytes", 1048576.0 * memory.a});
+  table.add(Figure{"growth, memory", name, "constant", "MB", memory.b});
+  table.add(Figure{"growth, memory", name, "largest deviation from the fit", "%", 100.0 * memory.worst});
 }
 
 }  // namespace
 
 void measureGrowth(const std::vector<std::size_t>& points, Table& table) {
-  grow("one drive of 160 m, again and again", points, false, table);
+  grow("one drive of 160 m, repeated", points, false, table);
   grow("a square kilometre", points, true, table);
 }
 

@@ -45,7 +45,7 @@ double both(const Work& work, int threads) {
 template <typename Work>
 void measure(const char* name, const Work& work, int runs, Table& table) {
   const std::vector<Measured> of = measureInTurn({[&] { return both(work, 2); }, [&] { return both(work, 1); }}, runs);
-  table.add(Row{"this machine", name, 2, of[0].seconds, 0.0, "one thread", of[1].seconds, 0.0, 0.0});
+  table.add(Row{"this machine", name, 2, of[0].seconds, 0.0, "one thread", of[1].seconds, 0.0});
 }
 
 }  // namespace

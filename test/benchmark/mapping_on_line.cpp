@@ -67,7 +67,7 @@ void measureScans(const std::string& name, const std::vector<Scan>& scans, Table
     for (int threads = 1; threads <= 2; ++threads) {
       const Measured& own = of[static_cast<std::size_t>(threads) - 1];
       table.add(Row{"on-line mapping", input, threads, own.seconds, own.megabytes, "OctoMap with rays", of[2].seconds,
-                    of[2].megabytes, 0.0});
+                    of[2].megabytes});
     }
   }
 }

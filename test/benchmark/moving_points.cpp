@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Moving objects: gaussmap clean, pcd2map --online, and OctoMap (insertPointCloud with rays, points of free cells
 // removed) on the same scans, one thread, at 0.2 and 0.1 m. SA, DA, AA in percent against the field `label` (without
-// one all points count as static), seconds a scan without reading. gaussmap_benchmark moving-points DIR...
+// one all points count as static), seconds per scan without reading. gaussmap_benchmark moving-points DIR...
 #include <octomap/octomap.h>
 
 #include <CLI/CLI.hpp>
@@ -55,7 +55,7 @@ struct Sequence {
 };
 
 void print(const char* method, const RemovalScore& score, double seconds, std::size_t scans) {
-  std::printf("  %-22s SA %7.3f  DA %6.2f  AA %6.2f  %8.4f s a scan\n", method, 100.0 * score.staticAccuracy(),
+  std::printf("  %-22s SA %7.3f  DA %6.2f  AA %6.2f  %8.4f s per scan\n", method, 100.0 * score.staticAccuracy(),
               score.moving ? 100.0 * score.dynamicAccuracy() : 0.0,
               score.moving ? 100.0 * score.associatedAccuracy() : 0.0, seconds / double(scans));
   std::fflush(stdout);
@@ -96,7 +96,7 @@ double online(const Sequence& sequence, double resolution) {
   const double seconds = wallSeconds() - start;
   const GaussianMap<3> map = mapper.map();
   print("pcd2map --online", sequence.score([&](auto s, auto p) {
-    // Gone with its cell; or, where a part of a cell was deleted, beyond three standard deviations of what is left.
+    // Removed with its cell; or, if a part of the cell was deleted, beyond three standard deviations of the rest.
     const Eigen::Vector3d point = sequence.inMap(s, p);
     const auto cell = map.find(map.grid().keyOf(point), 0);
     return !cell ||

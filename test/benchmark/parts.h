@@ -27,14 +27,14 @@ struct Options {
   std::vector<std::size_t> points = {5000000, 20000000};  ///< of the simulated drive
   std::string data;                                       ///< directory with kitti_6scans and so on; may be empty
   std::string build;                                      ///< build directory, with apps/gaussmap
-  int runs = 5;                                           ///< the fastest counts; three of more than ten million points
+  int runs = 5;                                           ///< the fastest counts; at most 3 for over 10 M points
 };
 
-/// What two threads of this machine can do, of work that shares nothing.
+/// The speed-up of two threads of this machine, for work without shared data.
 void measureMachine(int runs, Table& table);
 /// The finest scale beside pcl::VoxelGridCovariance, std::unordered_map and OctoMap's hits: time, memory.
-void measureBuilding(const Input& input, int runs, bool is_goal, Table& table);
-/// What the coarser scales take of building.
+void measureBuilding(const Input& input, int runs, Table& table);
+/// The share of the coarser scales in the time of a build.
 void measureCoarsening(const Input& input, int runs, Table& table);
 /// PCD files beside pcl::io::loadPCDFile.
 void measureReading(const Cloud& cloud, const std::filesystem::path& work, int runs, Table& table);
@@ -44,7 +44,7 @@ void measureHausdorff(std::size_t points, int runs, Table& table);
 void measureOnline(const Options& options, Table& table);
 /// Whole commands beside pcl-tools; does nothing if these are not installed.
 void measureCommands(const Options& options, const std::filesystem::path& work, Table& table);
-/// What other subcommands measure: refinement-speed, registration, normals, segments.
+/// The figures of other subcommands: refinement-speed, registration, normals, segments.
 void runOthers(const Options& options, const std::filesystem::path& work, Table& table);
 /// Time and memory against numbers of points and cells, fitted.
 void measureGrowth(const std::vector<std::size_t>& points, Table& table);

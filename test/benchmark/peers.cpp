@@ -43,14 +43,13 @@ void fill(const Options& options, const std::filesystem::path& work, Table& tabl
   measureMachine(options.runs, table);
   if (!options.data.empty())
     measureBuilding({"kitti_6scans", scansIn(std::filesystem::path(options.data) / "kitti_6scans")}, options.runs,
-                    false, table);
+                    table);
   for (const std::size_t count : options.points) {
     const Input packets{"street, packets", cloudOf(streetPoints(count, 0, 1))};
     const int runs = count > 10000000 ? std::min(options.runs, 3) : options.runs;
-    const bool is_goal = count == options.points.front();
-    measureBuilding(packets, runs, is_goal, table);
-    measureBuilding({"street, shuffled", shuffled(*packets.cloud)}, runs, is_goal, table);
-    if (!is_goal) continue;
+    measureBuilding(packets, runs, table);
+    measureBuilding({"street, shuffled", shuffled(*packets.cloud)}, runs, table);
+    if (count != options.points.front()) continue;
     measureCoarsening(packets, options.runs, table);
     measureReading(*packets.cloud, work, options.runs, table);
   }
@@ -89,9 +88,11 @@ void addTable(CLI::App& app) {
   const auto given = std::make_shared<Given>();
   given->build = std::filesystem::canonical("/proc/self/exe").parent_path().parent_path().parent_path();
   CLI::App& command = *app.add_subcommand("table", "gaussmap beside its peers");
-  command.add_flag("--growth", given->growth, "growth too");
+  command.add_flag("--growth", given->growth, "measure the growth too");
   addGrowthPoints(command, "--growth-points", given->growth_points);
-  command.add_option("--points", given->points, "of the simulated drive; goals are those of the first number")
+  command
+      .add_option("--points", given->points,
+                  "numbers of points of the simulated drive; the first one for all other inputs")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command.add_option("--data", given->data, "directory with kitti_6scans, rgbd_office_single, carmen_intel, ...")

@@ -14,8 +14,8 @@ namespace {
 constexpr double kSpacing = 0.02;  // of the points on the truth [m]: a fifth of a finest cell
 constexpr double kObserved = 0.5;  // a surface counts as observed so near to a ray's end [m]
 
-/// The ends of rays are measured against too, but far away they stand metres apart, so that a map is blamed for
-/// what it rightly fills between them.
+/// Points of the surface near the ends of rays. The ends themselves are metres apart far from the sensor: measured
+/// against them, a map would be blamed for surface that it fills correctly.
 std::vector<Vector<3>> observedSurface(const TriangleMesh& mesh, const std::vector<Vector<3>>& hits) {
   const auto count = static_cast<std::size_t>(surfaceArea(mesh) / (kSpacing * kSpacing));
   const std::vector<Vector<3>> all = sampleSurface(mesh, count);
@@ -33,11 +33,11 @@ DataSet street(const std::string& name, const std::function<Simulation()>& make)
     data.truth = observedSurface(data.mesh, data.hits);
     return data;
   };
-  return {name, "points on the observed surface, 2 cm apart", {0.1, 10, 3}, {3.4, 4.0}, true, 0.0, load};
+  return {name, "points on the observed surface, 2 cm apart", {0.1, 10, 3}, {3.4, 4.0}, true, load};
 }
 
 DataSet scan(const std::string& name, const std::filesystem::path& path, const MapOptions& options,
-             double times_below_one, double min_range = 0.0, double max_range = AccumulateOptions().max_range) {
+             double min_range = 0.0, double max_range = AccumulateOptions().max_range) {
   const auto load = [=](std::uint64_t) {
     AccumulateOptions reading;
     reading.max_range = max_range;
@@ -48,7 +48,7 @@ DataSet scan(const std::string& name, const std::filesystem::path& path, const M
     data.truth = data.points;
     return data;
   };
-  return {name, "the points themselves", options, {4.0}, false, times_below_one, load};
+  return {name, "the points themselves", options, {4.0}, false, load};
 }
 
 }  // namespace
@@ -71,9 +71,9 @@ std::vector<DataSet> dataSets(const std::filesystem::path& data, int scans) {
       street("simulated street", [options] { return makeSimulation(WorldName::Street, options); }),
       street("simulated avenue", [options] { return makeSimulation(WorldName::Avenue, options); })};
   if (data.empty()) return sets;
-  sets.push_back(scan("KITTI, one scan", data / "kitti_6scans/000000.pcd", {0.1, 10, 3}, 2.5, 2.5, 25.0));
-  sets.push_back(scan("RGB-D office", data / "rgbd_office_single/office1.pcd", {0.02, 10, 3}, 2.5));
-  sets.push_back(scan("building 079", data / "octomap_geb079/geb079_occupied_8cm.pcd", {0.24, 4, 3}, 2.0));
+  sets.push_back(scan("KITTI, one scan", data / "kitti_6scans/000000.pcd", {0.1, 10, 3}, 2.5, 25.0));
+  sets.push_back(scan("RGB-D office", data / "rgbd_office_single/office1.pcd", {0.02, 10, 3}));
+  sets.push_back(scan("building 079", data / "octomap_geb079/geb079_occupied_8cm.pcd", {0.24, 4, 3}));
   return sets;
 }
 

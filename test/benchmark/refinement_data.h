@@ -25,15 +25,14 @@ struct DataSet {
   MapOptions options;
   std::vector<double> budgets;  // multiples of the coarsest scale's cells
   bool simulated = false;
-  double times_below_one = 0.0;  // not simulated: how far 99 % and 95 % at 4 x shall be below one Gaussian per cell
   std::function<LoadedData(std::uint64_t seed)> load;
 };
 
 /// All points of a simulated drive [m, map frame].
 LoadedData simulatedDrive(const Simulation& simulation, std::uint64_t seed);
 
-/// The built-in street and the plain one of plain_street.h, `scans` each (0: as they are); with a folder of data (not
-/// empty) also one outdoor scan, one RGB-D image and one building.
+/// The simulated street and avenue with `scans` scans each (0: as many as they have). If `data` names a folder: also
+/// one outdoor scan, one RGB-D image and one building.
 std::vector<DataSet> dataSets(const std::filesystem::path& data, int scans);
 
 }  // namespace gaussmap::refinement

@@ -53,7 +53,7 @@ Json toJson(const Row& row) {
 
 }  // namespace
 
-void printTable(const Table& table, const std::vector<Goal>& goals) {
+void printTable(const Table& table, const std::vector<Ratio>& ratios) {
   const DataSet& data = *table.data;
   const MapOptions& o = data.options;
   std::printf("### %s, cells of %g / %g / %g m\n\nTruth: %s.\n\n", data.name.c_str(), o.resolution,
@@ -64,19 +64,17 @@ void printTable(const Table& table, const std::vector<Goal>& goals) {
   for (const Row& row : table.rows)
     printRow(row, row.method == kOnePerCell ? row.method : budgetOf(row) + ", " + row.method, data.simulated);
   if (data.simulated) {
-    printRow(table.middle, "middle scale, " + budgetOf(table.middle) + ", agglomerative", true);
+    printRow(table.middle, "middle scale, " + budgetOf(table.middle) + ", " + table.middle.method, true);
     printRow(table.finest, "finest scale", true);
   }
   std::printf("\n");
-  for (const Goal& goal : goals)
-    std::printf("- %s: %.2f, wanted %s %.4g: %s\n", goal.text.c_str(), goal.reached,
-                goal.at_least ? "at least" : "at most", goal.wanted, goal.met() ? "met" : "MISSED");
+  for (const Ratio& ratio : ratios) std::printf("- %s: %.2f\n", ratio.text.c_str(), ratio.value);
   std::printf("\n");
   std::fflush(stdout);
 }
 
 void printOverview(const std::vector<Table>& tables) {
-  const auto methods = {kOnePerCell, kPaper, kParentSeed, kAgglomerative, kUniformGrid};
+  const auto methods = {kOnePerCell, kPaper, kParentSeed, kAgglomeration, kUniformGrid};
   std::printf("| 99 %% / 95 %% / mean [m] |");
   for (const char* method : methods) std::printf(" %s |", method);
   std::printf("\n|---|---|---|---|---|---|\n");
@@ -94,16 +92,14 @@ void printOverview(const std::vector<Table>& tables) {
   }
 }
 
-nlohmann::ordered_json toJson(const Table& table, const std::vector<Goal>& goals) {
-  Json json = {{"data", table.data->name}, {"rows", Json::array()}, {"goals", Json::array()}};
+nlohmann::ordered_json toJson(const Table& table, const std::vector<Ratio>& ratios) {
+  Json json = {{"data", table.data->name}, {"rows", Json::array()}, {"ratios", Json::array()}};
   for (const Row& row : table.rows) json["rows"].push_back(toJson(row));
   if (table.data->simulated) {
     json["middle"] = toJson(table.middle);
     json["finest"] = toJson(table.finest);
   }
-  for (const Goal& goal : goals)
-    json["goals"].push_back(
-        {{"goal", goal.text}, {"wanted", goal.wanted}, {"reached", goal.reached}, {"met", goal.met()}});
+  for (const Ratio& ratio : ratios) json["ratios"].push_back({{"what", ratio.text}, {"value", ratio.value}});
   return json;
 }
 

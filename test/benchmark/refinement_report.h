@@ -8,12 +8,12 @@
 
 namespace gaussmap::refinement {
 
-/// Markdown on stdout: everything about one data set, means over the seeds with the worst in brackets.
-void printTable(const Table& table, const std::vector<Goal>& goals);
+/// Markdown on stdout: all figures of one data set, means over the seeds with the worst in brackets.
+void printTable(const Table& table, const std::vector<Ratio>& ratios);
 
 /// The coarsest scales of all data sets in one table: 99 % / 95 % / mean over the seeds.
 void printOverview(const std::vector<Table>& tables);
 
-nlohmann::ordered_json toJson(const Table& table, const std::vector<Goal>& goals);
+nlohmann::ordered_json toJson(const Table& table, const std::vector<Ratio>& ratios);
 
 }  // namespace gaussmap::refinement

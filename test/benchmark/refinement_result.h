@@ -11,9 +11,9 @@
 namespace gaussmap::refinement {
 
 inline constexpr const char* kOnePerCell = "one per cell";
-inline constexpr const char* kPaper = "paper's method";
-inline constexpr const char* kParentSeed = "paper's, parent seed";
-inline constexpr const char* kAgglomerative = "agglomerative";
+inline constexpr const char* kPaper = "insertion as in the paper";
+inline constexpr const char* kParentSeed = "insertion with parent seed";
+inline constexpr const char* kAgglomeration = "agglomeration";
 inline constexpr const char* kUniformGrid = "uniform grid";
 
 /// What one seed gave: distances of samples.
@@ -35,7 +35,7 @@ struct Row {
 struct Table {
   const DataSet* data = nullptr;
   std::vector<Row> rows;                // of the coarsest scale
-  Row middle{2.0, kAgglomerative, {}};  // simulated: the scale below it, and the finest
+  Row middle{2.0, kAgglomeration, {}};  // simulated: the scale below it, and the finest
   Row finest{1.0, kOnePerCell, {}};
 
   Row& row(double budget, const std::string& method) {
@@ -60,12 +60,10 @@ Figure figure(const Row& row, const Value& value) {
   return figure;
 }
 
-/// A ratio of two figures to reach.
-struct Goal {
-  std::string text;
-  double wanted, reached;
-  bool at_least;  // or at most
-  bool met() const { return at_least ? reached >= wanted : reached <= wanted; }
+/// A ratio of two figures.
+struct Ratio {
+  std::string text;  // "numerator / denominator"
+  double value = 0.0;
 };
 
 }  // namespace gaussmap::refinement

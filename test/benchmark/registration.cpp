@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // gaussmap_benchmark registration [--data DIR] [--starts 3] [--basin 10] [--json FILE]: a scan onto a scan, beside
-// PCL's NDT and GICP. DIR has the directories kitti_6scans, mulran_kaist03_21scans and dtk_indoor_3scans; what is
-// missing is said and left out; the simulated street is always there. One thread, processor time. Prints tables in
-// Markdown.
+// NDT and GICP of PCL. DIR has the directories kitti_6scans, mulran_kaist03_21scans and dtk_indoor_3scans; a missing
+// directory is reported and left out. The simulated street is always measured. One thread, processor time. Prints
+// tables in Markdown.
 #include <pcl/console/print.h>
 
 #include <CLI/CLI.hpp>
@@ -107,10 +107,9 @@ void compare(const Dataset& data, const std::vector<Starts>& kinds, const std::v
       const auto of = [](const Score& one) {
         return std::to_string(one.successes) + " of " + std::to_string(one.tries);
       };
-      const double wanted = kind == 0 ? method.wanted : 0.0;  // from near
-      table.rows.push_back(Row{"registration, " + of(own[kind]) + " found", data.name + ", " + kinds[kind].name, 1,
+      table.rows.push_back(Row{"registration (" + of(own[kind]) + " found)", data.name + ", " + kinds[kind].name, 1,
                                1e-3 * (own_prepare + own[kind].align / own[kind].tries), 0.0,
-                               method.name + ", " + of(score) + " found:", 1e-3 * (prepare + align), 0.0, wanted});
+                               method.name + " (" + of(score) + " found)", 1e-3 * (prepare + align), 0.0});
     }
     if (own.empty()) {
       own = scores;
@@ -148,17 +147,17 @@ void run(const RegistrationOptions& options) {
 
 void addRegistration(CLI::App& app) {
   const auto options = std::make_shared<RegistrationOptions>();
-  CLI::App& command = *app.add_subcommand("registration", "registration of scans beside PCL's");
+  CLI::App& command = *app.add_subcommand("registration", "registration of scans, beside NDT and GICP of PCL");
   command.add_option("--data", options->data, "folder of the datasets");
-  command.add_option("--starts", options->starts, "near starts a pair")
+  command.add_option("--starts", options->starts, "near starts per pair")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  command.add_option("--basin", options->basin, "far starts a pair")
+  command.add_option("--basin", options->basin, "far starts per pair")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command.add_option("--json", options->json, "write the rows for machines");
   command.add_flag("--quick", options->quick, "one pair of the street");
-  command.add_flag("--alone", options->alone, "without PCL's");
+  command.add_flag("--alone", options->alone, "without the methods of PCL");
   command.add_flag("--each", options->each, "print every try on stderr");
   command.callback([options] {
     pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);

@@ -48,7 +48,7 @@ class PreparedPcl : public Prepared {
 }  // namespace
 
 Method gaussianMap(const Sizes& sizes) {
-  return {"GaussianMapRegistration", 0.0, [sizes](const ScanPair& pair) {
+  return {"GaussianMapRegistration", [sizes](const ScanPair& pair) {
             auto registration = pcl::make_shared<GaussianMapRegistration<Point, Point>>();
             registration->setResolution(sizes.map);
             registration->setInputTarget(cloudOf(pair.target));
@@ -59,7 +59,7 @@ Method gaussianMap(const Sizes& sizes) {
 }
 
 Method pclNdt(const Sizes& sizes) {
-  return {"pcl::NormalDistributionsTransform", 10.0, [sizes](const ScanPair& pair) {
+  return {"pcl::NormalDistributionsTransform", [sizes](const ScanPair& pair) {
             auto ndt = pcl::make_shared<pcl::NormalDistributionsTransform<Point, Point>>();
             ndt->setResolution(static_cast<float>(sizes.ndt));
             ndt->setStepSize(0.1);
@@ -72,7 +72,7 @@ Method pclNdt(const Sizes& sizes) {
 }
 
 Method pclGicp(const Sizes& sizes) {
-  return {"pcl::GeneralizedIterativeClosestPoint", 0.0, [sizes](const ScanPair& pair) {
+  return {"pcl::GeneralizedIterativeClosestPoint", [sizes](const ScanPair& pair) {
             auto gicp = pcl::make_shared<pcl::GeneralizedIterativeClosestPoint<Point, Point>>();
             gicp->setInputTarget(thinned(cloudOf(pair.target), sizes.gicp_leaf));
             gicp->setInputSource(thinned(cloudOf(pair.source), sizes.gicp_leaf));

@@ -10,7 +10,7 @@
 
 namespace gaussmap::benchmark {
 
-/// Two scans made ready: what a method does once a pair.
+/// Two scans, prepared: what a method does once per pair.
 class Prepared {
  public:
   virtual ~Prepared() = default;
@@ -19,7 +19,6 @@ class Prepared {
 
 struct Method {
   std::string name;
-  double wanted;  ///< so many times as long as ours from near; 0: nothing was hoped for
   std::function<std::unique_ptr<Prepared>(const ScanPair&)> prepare;
 };
 

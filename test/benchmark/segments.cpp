@@ -111,7 +111,7 @@ void plan(double position_noise, int seeds) {
   std::printf("\n");
 }
 
-/// Beams a second: scan by scan, and with the map at the end.
+/// Beams per second: scan by scan, and with the map at the end.
 void speed(const char* name, const Scans& scans, Table& table) {
   std::size_t beams = 0;
   for (const LaserScan& scan : scans)
@@ -143,7 +143,7 @@ void speed(const char* name, const Scans& scans, Table& table) {
                 rate(adding), rate(all), baseline / adding, static_cast<double>(memory) / 1e6);
     if (kind == EvidencePolicy::MomentCells)
       table.rows.push_back(Row{"segments", std::string(name) + ", " + std::to_string(beams) + " beams", 1, adding,
-                               static_cast<double>(memory) / 1e6, "iterative end-point fit", baseline, 0.0, 0.0});
+                               static_cast<double>(memory) / 1e6, "iterative end-point fit", baseline, 0.0});
   }
   std::printf("| iterative end-point fit | | %.2f | 1 | |\n\n", rate(baseline));
 }
@@ -189,7 +189,7 @@ void study(const char* name, const Scans& scans, int seeds) {
 
 /// How fine a map is around a place.
 struct Detail {
-  double per_metre = 0.0;  // segments a metre of length
+  double per_metre = 0.0;  // segments per metre of length
   double variance = 0.0;   // mean of their normal variances, by length [m^2]
 
   void add(const SegmentMap& map, const Vector<2>& place, double radius) {
@@ -239,7 +239,7 @@ void viewpoint(const char* name, const Scans& scans) {
     for (int m = 0; m < 2; ++m) there[m].add(maps[m], here, radius);
   }
   std::printf(
-      "| %s, l_min 3 m: within %.0f m of a place | segments a metre, sensor there | %.0f m away | normal deviation "
+      "| %s, l_min 3 m: within %.0f m of a place | segments per metre, sensor there | %.0f m away | normal deviation "
       "[cm], sensor there | %.0f m away |\n|---|---|---|---|---|\n",
       name, radius, away, away);
   for (int m = 0; m < 2; ++m)
@@ -279,7 +279,7 @@ void addSegments(CLI::App& app) {
   command.add_option("--data", given->data, "directory with carmen_intel and carmen_csail")
       ->check(CLI::ExistingDirectory);
   command.add_option("--seeds", given->seeds, "of the simulated noise and of particles")->check(CLI::Range(1, 1000));
-  command.add_flag("--only-speed", given->only_speed, "beams a second and nothing else");
+  command.add_flag("--only-speed", given->only_speed, "only the speed, in beams per second");
   command.add_option("--json", given->json, "write the speed for machines");
   command.callback([given] {
     Table table;

@@ -19,36 +19,30 @@ Json jsonOf(const Row& row) {
           {"megabytes", row.megabytes},
           {"peer", row.peer},
           {"peer_seconds", row.peer_seconds},
-          {"peer_megabytes", row.peer_megabytes},
-          {"wanted", row.wanted}};
+          {"peer_megabytes", row.peer_megabytes}};
 }
 Json jsonOf(const Figure& figure) {
-  return {{"part", figure.part}, {"input", figure.input}, {"what", figure.what},
-          {"unit", figure.unit}, {"value", figure.value}, {"at_most", figure.at_most}};
-}
-
-const char* verdict(double wanted, bool met) {
-  return wanted == 0.0 ? "" : met ? "  met" : "  MISSED";
+  return {{"part", figure.part},
+          {"input", figure.input},
+          {"what", figure.what},
+          {"unit", figure.unit},
+          {"value", figure.value}};
 }
 
 }  // namespace
 
 void Table::add(const Row& row) {
   rows.push_back(row);
-  std::printf("%-24s %-32s %d thread%s %9.4f s %7.1f MB | %-26s %9.4f s %7.1f MB | %6.2f", row.part.c_str(),
+  std::printf("%-24s %-32s %d thread%s %9.4f s %7.1f MB | %-26s %9.4f s %7.1f MB | %6.2f\n", row.part.c_str(),
               row.input.c_str(), row.threads, row.threads == 1 ? " " : "s", row.seconds, row.megabytes,
               row.peer.c_str(), row.peer_seconds, row.peer_megabytes, row.ratio());
-  if (row.wanted != 0.0) std::printf(" (wanted %g)", row.wanted);
-  std::printf("%s\n", verdict(row.wanted, row.ratio() >= row.wanted));
   std::fflush(stdout);
 }
 
 void Table::add(const Figure& figure) {
   figures.push_back(figure);
-  std::printf("%-24s %-32s %s: %.4g %s", figure.part.c_str(), figure.input.c_str(), figure.what.c_str(), figure.value,
+  std::printf("%-24s %-32s %s: %.4g %s\n", figure.part.c_str(), figure.input.c_str(), figure.what.c_str(), figure.value,
               figure.unit.c_str());
-  if (figure.at_most != 0.0) std::printf(" (wanted at most %g)", figure.at_most);
-  std::printf("%s\n", verdict(figure.at_most, figure.value <= figure.at_most));
   std::fflush(stdout);
 }
 
@@ -66,10 +60,9 @@ void addJson(const std::string& path, Table& table) {
   const Json json = Json::parse(file);
   for (const Json& row : json.value("rows", Json::array()))
     table.add(Row{row.at("part"), row.at("input"), row.at("threads"), row.at("seconds"), row.at("megabytes"),
-                  row.at("peer"), row.at("peer_seconds"), row.at("peer_megabytes"), row.at("wanted")});
+                  row.at("peer"), row.at("peer_seconds"), row.at("peer_megabytes")});
   for (const Json& figure : json.value("figures", Json::array()))
-    table.add(Figure{figure.at("part"), figure.at("input"), figure.at("what"), figure.at("unit"), figure.at("value"),
-                     figure.at("at_most")});
+    table.add(Figure{figure.at("part"), figure.at("input"), figure.at("what"), figure.at("unit"), figure.at("value")});
 }
 
 }  // namespace gaussmap::benchmark

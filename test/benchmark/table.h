@@ -6,32 +6,30 @@
 
 namespace gaussmap::benchmark {
 
-/// One comparison: how much longer the peer takes for the same.
+/// One comparison: the time that gaussmap and a peer take for the same task.
 struct Row {
   std::string part, input;
-  int threads = 1;         ///< ours; peers that can have one only
-  double seconds = 0.0;    ///< ours
-  double megabytes = 0.0;  ///< ours, 0: not measured
+  int threads = 1;         ///< of gaussmap; a peer that has no threads uses one
+  double seconds = 0.0;    ///< of gaussmap
+  double megabytes = 0.0;  ///< of gaussmap, 0: not measured
   std::string peer;
   double peer_seconds = 0.0;
   double peer_megabytes = 0.0;
-  double wanted = 0.0;  ///< of the ratio, 0: nothing
   double ratio() const { return peer_seconds / seconds; }
 };
 
-/// A number that is no ratio of times.
+/// A figure that is not a ratio of times.
 struct Figure {
   std::string part, input, what, unit;
   double value = 0.0;
-  double at_most = 0.0;  ///< 0: nothing wanted
 };
 
 struct Table {
   std::vector<Row> rows;
   std::vector<Figure> figures;
 
-  void add(const Row& row);        ///< and prints it
-  void add(const Figure& figure);  ///< and prints it
+  void add(const Row& row);        ///< adds a row and prints it
+  void add(const Figure& figure);  ///< adds a figure and prints it
 };
 
 /// {"rows": [...], "figures": [...]}; throws std::runtime_error if it cannot be written.
