@@ -32,7 +32,7 @@ struct WallScore {
 };
 
 /// Compares a map with the true walls. Of `walls` it uses only start and end, with free space on the left. Throws
-/// std::invalid_argument, with the option, or if an end point is not finite.
+/// std::invalid_argument if an option is not valid (naming it) or an end point is not finite.
 WallScore scoreWalls(const SegmentMap& map, const std::vector<Segment>& walls, const WallScoreOptions& options = {});
 
 }  // namespace gaussmap::detail

@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint32_t kLeafSize = 4;
 constexpr int kBins = 16;
 constexpr std::size_t kMaxTriangles = std::size_t{1} << 31;
-constexpr int kDeepestByCost = 64;  // below it halves of equal number: at most 32 levels more
+constexpr int kDeepestByCost = 64;  // deeper nodes are split into halves of equal number, which adds at most 32 levels
 constexpr std::size_t kStack = 128;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kFarthest = 1e70;      // [m]; fourth powers beyond it would overflow

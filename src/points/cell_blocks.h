@@ -52,7 +52,7 @@ struct Blocks {
   std::array<std::uint8_t, 8> lowest{};                 // per k: place of the block's lowest cell
   std::array<std::uint64_t, 8> three{};                 // per k: octants of the block of 3 x 3 x 3
   std::array<std::array<std::uint8_t, 64>, 8> place{};  // per k: place of each octant among the finer 27
-  std::array<std::array<std::uint64_t, 4>, 8> five{};   // per k: octants two off along just one axis
+  std::array<std::array<std::uint64_t, 4>, 8> five{};   // per k: octants two off along one axis only
 
   Blocks() {
     for (unsigned k = 0; k < 8; ++k) {

@@ -92,7 +92,8 @@ class Search {
   /// Finds the nearest distance of each query. Stops earlier if all squared distances are at most `enough` [m^2].
   void run(Group& group, double enough) {
     if (go(group, enough, kPatience)) return;
-    Group alone;  // for a group that is spread out and far from the tree's points: its box is near to too many nodes
+    // The group is spread out and far from the tree's points, so its box is near too many nodes.
+    Group alone;
     for (std::size_t i = 0; i < group.count; ++i) {
       alone.fillWithOne({group.at[0][i], group.at[1][i], group.at[2][i]}, group.best[i]);
       go(alone, enough, kForever);

@@ -21,7 +21,7 @@ class PointTreePair {
 
 /// Returns per point of `from` the distance to the nearest point of `to` [m], in the original order of the points.
 /// Neither tree may be empty. `threads`: 0 = all cores. `comparisons`, if given, gets the number of point pairs that
-/// were compared. They take most of the time.
+/// were compared, which takes most of the time.
 std::vector<double> nearestDistances(const PointTree& from, const PointTree& to, int threads,
                                      std::size_t* comparisons = nullptr);
 

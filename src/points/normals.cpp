@@ -209,7 +209,7 @@ void checkOptions(const PointNormalOptions& options, std::size_t points) {
           "must be 3 to " + std::to_string(kMaxMinPoints));
   if (!options.viewpoint.allFinite()) throw std::invalid_argument("the viewpoint is not finite");
   if (points >= std::size_t{1} << 31)
-    throw std::invalid_argument(std::to_string(points) + " points: at most 2^31 - 1 are possible");
+    throw std::invalid_argument(std::to_string(points) + " points: at most 2^31 - 1 are supported");
 }
 
 /// Computes the normals of the queries within the cube. Returns the number of queries without a normal.

@@ -62,8 +62,8 @@ using Point = std::array<float, 4>;
 using Floats = float __attribute__((vector_size(32)));
 using Doubles = double __attribute__((vector_size(64)));  // two points
 
-/// Copies the points of many ranges one after another, for one loop over all of them. One loop per range would cost
-/// more than its sums, because the lengths are almost random.
+/// Size of a buffer for the points of many ranges, one after another, for one loop over all of them. One loop per range
+/// would cost more than its sums, because the lengths are almost random.
 constexpr std::size_t kTogether = 256;
 
 struct Products {

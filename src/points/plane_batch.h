@@ -57,8 +57,8 @@ class PlaneRanges {
   std::size_t size_ = 0;
 };
 
-/// The number of points, and sums over the points, relative to one of them: x times (x, y, z, 1), then y and z times
-/// the same.
+/// Sums over points, whose coordinates are relative to one of the points: the products of x with (x, y, z, 1), then
+/// those of y and z, and the number of points.
 struct PlaneSums {
   std::array<double, 12> product{};
   double count = 0.0;

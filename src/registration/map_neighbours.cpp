@@ -12,7 +12,7 @@ namespace {
 // Weight of the axes other than the thinnest at the finest scale. Scan lines on a plane look thin along two axes, but
 // they move with the sensor.
 constexpr double kLine = 0.03;
-// A cell counts as full from this share of a full cell's variance on, because a few points seldom reach all of it.
+// An axis fills its cell from this share of a full cell's variance on, because a few points rarely reach all of it.
 constexpr double kFilled = 0.6;
 
 /// Compares two keys inline. The comparison of two std::array calls a function.

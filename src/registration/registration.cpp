@@ -62,8 +62,8 @@ DescentLimits limitsOf(const Step& step, bool last, const RegistrationOptions& o
   return {options.max_iterations, translation, translation / options.translation * options.rotation};
 }
 
-/// Computes the covariance of the pose, and finds the direction with the least information. Rotations are multiplied by
-/// the range, to compare them with metres.
+/// Computes the covariance of the pose, and finds the direction with the least information. Multiplies rotations by the
+/// range, to make them comparable with metres.
 void judge(const NormalEquations& sums, double range, const RegistrationOptions& options, RegistrationResult& result) {
   if (sums.met == 0) return;
   Vector6 unit = Vector6::Ones();

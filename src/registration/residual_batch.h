@@ -11,8 +11,8 @@
 namespace gaussmap::detail {
 
 /// Pairs of a Gaussian of a scan and its partner in the map, in columns for vector registers. A pair has the residual
-/// d^2 = sum over a: tells_a (a' r)^2 / (variance_a + blur^2 + a' R S R' a), where
-/// a are the axes of the map's Gaussian, r = R m + t - mean of the map's Gaussian, and m and S are the mean and the
+/// d^2 = sum over a: tells_a (a' r)^2 / (variance_a + blur^2 + a' R S R' a).
+/// Here a are the axes of the map's Gaussian and r = R m + t - mean of the map's Gaussian. m and S are the mean and the
 /// covariance of the scan's Gaussian [m, relative to the sensor].
 class ResidualBatch {
  public:

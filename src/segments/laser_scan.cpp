@@ -18,8 +18,8 @@ using namespace detail;
 namespace {
 
 constexpr double kNoReturn = std::numeric_limits<double>::quiet_NaN();
-constexpr double kMaxHeight = 0.5;  // of a planar laser's points, poses tilt a little [m]
-constexpr double kGap = 1.5;        // usual steps between beams, above which one is missing
+constexpr double kMaxHeight = 0.5;  // of the points of a planar laser [m], because its poses may tilt a little
+constexpr double kGap = 1.5;        // a beam is missing if two beams are more than this many usual steps apart
 
 struct Beam {
   double bearing;  // NaN: not known
@@ -163,8 +163,9 @@ LaserScan planarScan(const Scan& cloud, const PlanarScanOptions& options) {
     return scan;
   }
   if (view.highest - view.lowest > kMaxHeight)
-    throw std::invalid_argument("no scan of a planar laser: its heights in the map go from " + numberText(view.lowest) +
-                                " m to " + numberText(view.highest) + " m; take a slice of it");
+    throw std::invalid_argument("not a scan of a planar laser: the heights of its points in the map are " +
+                                numberText(view.lowest) + " m to " + numberText(view.highest) +
+                                " m; use a slice of it");
   addSweep(scan, ordered(view.beams));
   return scan;
 }

@@ -165,7 +165,8 @@ double azimuthStep(const std::vector<Ray>& rays, const std::vector<double>& ring
 }
 
 int columnsFor(double step) {
-  constexpr double kStepsPerColumn = 2.0;  // measured: 1 to 3 find the same moving points, below 2 more still ones
+  // Measured: 1 to 3 find the same moving points, but values below 2 find more static ones too.
+  constexpr double kStepsPerColumn = 2.0;
   constexpr double kMaxColumns = 36000.0;
   if (!(step > 0.0)) return 360;
   return static_cast<int>(std::lround(std::clamp(2.0 * kPi / (kStepsPerColumn * step), 4.0, kMaxColumns)));

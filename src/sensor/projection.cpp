@@ -15,7 +15,7 @@ using namespace detail;
 
 namespace {
 
-constexpr double kRounding = 1e-7;  // more than an arc sine near 1 is wrong by when its argument is rounded [rad]
+constexpr double kRounding = 1e-7;  // upper bound of the error of an arc sine near 1, by rounding of its argument [rad]
 constexpr double kMaxPixels = 268435456.0;  // 2 GB of ranges
 
 int rowOf(const SphericalProjection& projection, double elevation) {

@@ -12,7 +12,7 @@ namespace gaussmap::simulation {
 /// Returns the rotation by yaw, then pitch, then roll [degree].
 Pose::Rotation turned(double yaw, double pitch, double roll);
 
-/// Returns the product second * first: the pose of a body that `first` places in a frame, which `second` places.
+/// Returns second * first: the motion by `first` and then by `second`.
 Pose chained(const Pose& second, const Pose& first);
 
 struct PathOptions {

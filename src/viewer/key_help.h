@@ -3,7 +3,7 @@
 
 namespace gaussmap::detail {
 
-/// What the keys of the window do, see Viewer::press(). Without VTK, so that the commands can print it too.
+/// What the keys of the window do, see Viewer::press(). This header needs no VTK, because commands print the text too.
 inline constexpr const char* kKeyHelp =
     "0..9, Up, Down  scale (0 = finest)\n"
     "l               the map at its finest\n"

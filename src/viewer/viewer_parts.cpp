@@ -21,7 +21,7 @@ using namespace detail;
 
 namespace {
 
-constexpr std::size_t kMaxSmooth = 200000;  // Gaussians
+constexpr std::size_t kMaxSmooth = 200000;  // Gaussians that can be moved smoothly
 
 Vector<3> centreOf(const Glyph& glyph) {
   return {double{glyph.centre[0]}, double{glyph.centre[1]}, double{glyph.centre[2]}};

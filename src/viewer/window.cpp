@@ -48,8 +48,8 @@ class Style : public vtkInteractorStyleTrackballCamera {
     parts->setDetail(moving_);
     vtkInteractorStyleTrackballCamera::StartState(state);
   }
-  void StopState() override {  // the call below draws
-    if (!is_in_wheel_) parts->setDetail(Detail::Round);
+  void StopState() override {
+    if (!is_in_wheel_) parts->setDetail(Detail::Round);  // before StopState(), which draws
     vtkInteractorStyleTrackballCamera::StopState();
   }
   void OnMouseMove() override {

@@ -122,7 +122,7 @@ TEST_F(PlanarScanTest, RefusesACloudThatIsNotPlanar) {
   test::expectComplaint(test::complaintOf([&] {
                           read({polar(0, 1, 0.0), polar(1, 1, 0.6)});
                         }),
-                        path, {"no scan of a planar laser", "0.6", "slice"});
+                        path, {"not a scan of a planar laser", "0.6", "slice"});
   EXPECT_NO_THROW(read({polar(0, 1, 0.0), polar(1, 1, 0.4)}));
 }
 
