@@ -19,7 +19,7 @@ std::string poseFault(const Pose& pose) {
   } else if (!q.coeffs().allFinite()) {
     text << "the quaternion (w " << q.w() << ", x " << q.x() << ", y " << q.y() << ", z " << q.z() << ") is not finite";
   } else if (norm == 0.0) {
-    text << "the quaternion is zero: no rotation is w = 1, x = y = z = 0";
+    text << "the quaternion is zero: use w = 1, x = y = z = 0 for no rotation";
   } else if (!(std::abs(norm - 1.0) <= kQuaternionTolerance)) {
     text << "the quaternion (w " << q.w() << ", x " << q.x() << ", y " << q.y() << ", z " << q.z() << ") has norm "
          << norm << " instead of 1: check the order of its numbers";

@@ -137,7 +137,7 @@ void writeEllipsoids(WriteBuffer& buffer, const Items& items, double sigma) {
   const std::size_t corners = sphere.vertices.size();
   if (items.size() > std::size_t{std::numeric_limits<std::int32_t>::max()} / corners)
     throw std::length_error(std::to_string(items.size()) +
-                            " ellipsoids are too many for one mesh: take a coarser scale");
+                            " ellipsoids are too many for one mesh: use a coarser scale");
   buffer.addText(begin(items.origin()) + vertexElement(items.size() * corners) +
                  properties("uchar", {"red", "green", "blue"}) + "element face " +
                  std::to_string(items.size() * sphere.triangles.size()) +

@@ -45,10 +45,11 @@ void readNumbers(ColumnReader& columns, std::size_t count, int least_width, cons
   std::uint64_t width = 0, low = 0;
   columns.read(1, 1, [&](std::size_t, std::uint64_t bits) { width = bits; });
   columns.read(1, 8, [&](std::size_t, std::uint64_t bits) { low = bits; });
-  if (width < static_cast<std::uint64_t>(least_width) || width > 8) throw std::runtime_error("a column of wrong width");
+  if (width < static_cast<std::uint64_t>(least_width) || width > 8)
+    throw std::runtime_error("a column has a wrong width");
   columns.read(count, static_cast<int>(width), [&](std::size_t i, std::uint64_t bits) {
     const auto number = static_cast<std::int64_t>(low + bits);
-    if (number <= -kLargestNumber || number >= kLargestNumber) throw std::runtime_error("a number that is too large");
+    if (number <= -kLargestNumber || number >= kLargestNumber) throw std::runtime_error("a number is too large");
     take(i, number);
   });
 }
@@ -96,13 +97,13 @@ Tile<D> readFinalColumns(const char* bytes, std::size_t size, const FinalContent
     readNumbers(columns, cells, 0, [&](std::size_t i, std::int64_t number) {
       const std::int64_t first = std::int64_t{address.tile[axis]} * address.span;
       if (number < 0 || number >= address.span || first + number != static_cast<std::int32_t>(first + number))
-        throw std::runtime_error("a cell that lies outside it");
+        throw std::runtime_error("a cell lies outside the tile");
       tile.keys[i][axis] = static_cast<std::int32_t>(first + number);
     });
   std::uint64_t counted = 0;
   readNumbers(columns, cells, 0, [&](std::size_t i, std::int64_t number) {
     if (number < 1 || static_cast<std::uint64_t>(number) > gaussians)
-      throw std::runtime_error("a cell with a wrong number of Gaussians");
+      throw std::runtime_error("a cell has a wrong number of Gaussians");
     tile.counts[i] = static_cast<std::uint32_t>(number);
     counted += tile.counts[i];
   });
@@ -124,7 +125,7 @@ Tile<D> readFinalColumns(const char* bytes, std::size_t size, const FinalContent
     tile.labels.resize(gaussians);
     readNumbers(columns, gaussians, 0, [&](std::size_t i, std::int64_t number) {
       if (number < 0 || number > std::numeric_limits<std::uint32_t>::max())
-        throw std::runtime_error("a parent that is none");
+        throw std::runtime_error("the parent of a Gaussian is impossible");
       tile.labels[i] = static_cast<std::uint32_t>(number);
     });
   }

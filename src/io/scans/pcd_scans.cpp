@@ -88,7 +88,7 @@ void warnOfScansGivenTwice(const std::vector<std::filesystem::path>& paths, std:
   for (const std::filesystem::path& path : paths) {
     std::error_code error;
     if (seen.insert(std::filesystem::weakly_canonical(path, error)).second || error) continue;
-    warnings.push_back(path.string() + " is given more than once, its points count as often");
+    warnings.push_back(path.string() + " is given more than once, so its points count more than once");
     return;
   }
 }
