@@ -40,7 +40,7 @@ Pose Pose::inverse() const {
 }
 
 PoseCovariance covarianceOfInverse(const Pose& pose, const PoseCovariance& covariance) {
-  // An error (dt, dr) of the pose, seen from the other frame: rotated, and moved to the other origin.
+  // An error (dt, dr) of the pose, expressed in the other frame: it is rotated, and moved to the other origin.
   const Eigen::Matrix3d back = pose.rotation.toRotationMatrix().transpose();
   PoseCovariance j = PoseCovariance::Zero();
   j.topRows<3>() = back * poseJacobian(-pose.translation);

@@ -24,7 +24,7 @@ namespace {
 
 constexpr int kFacets = 8;                         // facets of an ellipsoid around its equator
 constexpr int kRest = 45;                          // coefficients of a splat's higher spherical harmonics
-constexpr double kHarmonic = 0.28209479177387814;  // the constant one, 1 / (2 sqrt(pi))
+constexpr double kHarmonic = 0.28209479177387814;  // the constant spherical harmonic, 1 / (2 sqrt(pi))
 constexpr double kMinDeviation = 1e-9;             // [m]; the logarithm of 0 would not be finite
 
 /// A Gaussian and its values that all three kinds of file need.

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMaxAtOnce = std::size_t{1} << 30;  // write() takes no more than 2 GB
+constexpr std::size_t kMaxAtOnce = std::size_t{1} << 30;  // write() accepts at most 2 GB per call
 
 fs::path resolved(const fs::path& target) {
   std::error_code error;

@@ -48,7 +48,7 @@ struct SpilledCuts {
   SpillFile::Span gains;
 };
 
-/// A complete tile, on the disk.
+/// A compressed tile, on disk.
 struct SpilledTile {
   TileRow<3> row;  // without its bytes
   SpillFile::Span bytes;

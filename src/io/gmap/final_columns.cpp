@@ -13,11 +13,11 @@
 namespace gaussmap::detail {
 namespace {
 
-/// Columns of a Gaussian: weight, mean, factor of the covariance.
+/// Number of columns per Gaussian: weight, mean, factor of the covariance.
 template <int D>
 constexpr std::uint64_t kNumbers = 1 + 2 * D + QuantisedGaussian<D>::kLower;
 
-constexpr std::int64_t kLargestNumber = std::int64_t{1} << 62;  // numbers are smaller, so that differences fit
+constexpr std::int64_t kLargestNumber = std::int64_t{1} << 62;  // all numbers are smaller, so differences fit
 
 int widthOf(std::uint64_t most) {
   int width = 0;
@@ -25,7 +25,8 @@ int widthOf(std::uint64_t most) {
   return width;
 }
 
-/// A column of whole numbers: how wide (1 byte), the least of them (8 bytes), how far above it each is.
+/// Writes a column of whole numbers: the width in bytes (1 byte), the minimum (8 bytes), then each number
+/// minus the minimum.
 template <typename ValueAt>
 void writeNumbers(std::string& bytes, std::size_t count, int least_width, const ValueAt& value) {
   std::int64_t low = std::numeric_limits<std::int64_t>::max(), high = std::numeric_limits<std::int64_t>::min();
@@ -87,7 +88,7 @@ void writeFinalColumns(std::string& bytes, const Tile<D>& tile, const TileAddres
 template <int D>
 Tile<D> readFinalColumns(const char* bytes, std::size_t size, const FinalContents& contents,
                          const TileAddress<D>& address, const MapOptions& options) {
-  const std::uint64_t cells = contents.cells, gaussians = contents.gaussians;  // a binding cannot be captured
+  const std::uint64_t cells = contents.cells, gaussians = contents.gaussians;  // lambdas cannot capture bindings
   if (gaussians > size / kNumbers<D> || cells > gaussians) throw std::runtime_error("shorter than its cells need");
   ColumnReader columns(bytes, size);
   Tile<D> tile;

@@ -149,7 +149,7 @@ class Updater {
   }
 
  private:
-  /// How many Gaussians a coarse scale of the whole map may have when it has so many cells.
+  /// Returns the maximum number of Gaussians of a coarse scale of the whole map if the scale has this many cells.
   std::size_t maxGaussians(std::size_t s, std::size_t cells) const {
     constexpr double kRounding = 1e-9;
     const double per_cell = options_.budget ? *options_.budget

@@ -16,8 +16,8 @@
 namespace gaussmap::detail {
 namespace {
 
-constexpr std::uint64_t kMaxExpansion = 64;       // of a tile by decompression; real ones grow two or three times
-constexpr std::uint64_t kMaxFinalExpansion = 16;  // numbers that are packed already
+constexpr std::uint64_t kMaxExpansion = 64;       // how much a tile may expand; real tiles expand two or three times
+constexpr std::uint64_t kMaxFinalExpansion = 16;  // the limit for final maps, whose numbers are already packed
 constexpr std::uint64_t kHasMoments = 1, kHasLabels = 2, kHasLogOdds = 4, kFinal = 8;
 
 /// Returns the numbers in front of the columns, 8 bytes each.
@@ -70,8 +70,8 @@ void forTriangle(const Body& body) {
     for (int column = row; column < D; ++column) body(row, column, slot++);
 }
 
-/// Data as regular as a lattice of points are packed so tightly that decompress() would take them for a bomb: a
-/// skippable frame makes up for it.
+/// Appends a skippable frame if the data shrank too much. Very regular data, like a lattice of points, shrink so much
+/// that decompress() would otherwise take them for a decompression bomb.
 void fillUp(std::string& packed, std::size_t raw_size, std::uint64_t max_expansion) {
   constexpr std::uint32_t kSkippable = 0x184D2A50;
   const std::size_t least = raw_size / max_expansion + 1;

@@ -18,9 +18,9 @@ using namespace detail;
 namespace {
 
 constexpr double kDegree = kPi / 180.0;
-constexpr double kFarthest = 1e9;  // of a pose [m]
+constexpr double kFarthest = 1e9;  // largest coordinate of a pose [m]
 constexpr std::size_t kMaxFaults = 1000;
-constexpr double kSickNoReturn = 80.0, kSickLimit = 82.0;  // a SICK writes 81.83 and the like for no return [m]
+constexpr double kSickNoReturn = 80.0, kSickLimit = 82.0;  // [m]; a SICK writes 81.83 or similar if there is no return
 
 /// What is wrong with a line of the log.
 struct BadLine : std::runtime_error {

@@ -16,7 +16,8 @@ using namespace detail;
 
 namespace {
 
-// Beyond, files are opened again when they are read: each open one takes a memory map and a few kilobytes.
+// Maximum number of files that stay open: each takes a memory map and a few kilobytes. Other files are opened again
+// when they are read.
 constexpr std::size_t kMaxOpen = 1024;
 
 std::vector<std::filesystem::path> scansIn(const std::filesystem::path& directory) {
