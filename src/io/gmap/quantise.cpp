@@ -49,12 +49,12 @@ std::int64_t sixteenths(double value) {
 
 double fromSixteenths(std::int64_t number) {
   const std::int64_t octave = (number >= 0 ? number : number - (kOctave - 1)) / kOctave;
-  if (std::abs(octave) > kMaxExponent) throw std::domain_error("a number that is too large or too small");
+  if (std::abs(octave) > kMaxExponent) throw std::domain_error("a number is too large or too small");
   return std::ldexp(kPowers[number - octave * kOctave], static_cast<int>(octave));
 }
 
 std::int64_t wholeNumber(double value) {
-  if (!(std::abs(value) < 0x1.0p62)) throw std::domain_error("numbers that are too large or not finite");
+  if (!(std::abs(value) < 0x1.0p62)) throw std::domain_error("numbers are too large or not finite");
   return static_cast<std::int64_t>(std::nearbyint(value));
 }
 
@@ -69,7 +69,7 @@ Factor<D> cholesky(const Matrix<D>& cov) {
       double rest = cov(static_cast<int>(row), static_cast<int>(column));
       for (std::size_t k = 0; k < column; ++k) rest -= factor[row][k] * factor[column][k];
       if (row == column && !(rest > 0.0 && std::isfinite(rest)))
-        throw std::domain_error("a covariance that is not positive definite");
+        throw std::domain_error("a covariance is not positive definite");
       factor[row][column] = row == column ? std::sqrt(rest) : rest / factor[column][column];
     }
   return factor;
@@ -108,7 +108,7 @@ Factor<D> restoreFactor(const QuantisedGaussian<D>& numbers, double noise) {
 }
 
 std::int64_t quantiseWeight(double weight) {
-  if (!(weight > 0.0 && std::isfinite(weight))) throw std::domain_error("a Gaussian without weight");
+  if (!(weight > 0.0 && std::isfinite(weight))) throw std::domain_error("a weight is not positive or not finite");
   int exponent = 0;
   const double digits = std::nearbyint(std::frexp(weight, &exponent) * 2.0 * kWeightSteps);  // 16 ... 32
   return kWeightSteps * exponent + static_cast<std::int64_t>(digits) - kWeightSteps;
@@ -116,7 +116,7 @@ std::int64_t quantiseWeight(double weight) {
 
 double restoreWeight(std::int64_t number) {
   const std::int64_t exponent = (number >= 0 ? number : number - (kWeightSteps - 1)) / kWeightSteps;
-  if (std::abs(exponent) > kMaxExponent) throw std::domain_error("a weight that is too large or too small");
+  if (std::abs(exponent) > kMaxExponent) throw std::domain_error("a weight is too large or too small");
   const std::int64_t digits = number - exponent * kWeightSteps + kWeightSteps;
   return std::ldexp(static_cast<double>(digits) / (2.0 * kWeightSteps), static_cast<int>(exponent));
 }
@@ -169,7 +169,7 @@ Gaussian<D> dequantise(const QuantisedGaussian<D>& numbers, double noise, double
     gaussian.mean(axis) = std::clamp(offset, -kMaxOffset * side, kMaxOffset * side);
   }
   if (!gaussian.cov.allFinite() || !gaussian.mean.allFinite())
-    throw std::domain_error("numbers that are too large or too small");
+    throw std::domain_error("numbers are too large or too small");
   return gaussian;
 }
 
