@@ -41,7 +41,7 @@ Gaussian<D> CellMoments<D>::gaussian(double side, double noise) const {
 
 template <int D>
 void CellMoments<D>::throwTooMany() {
-  throw std::length_error("more than 2^33 - 1 points in one cell: take finer cells or fewer scans");
+  throw std::length_error("more than 2^33 - 1 points in one cell: use finer cells or fewer scans");
 }
 
 template struct CellMoments<2>;

@@ -69,7 +69,7 @@ Gaussian<D> merge(const std::vector<Gaussian<D>>& parts) {
     merged.weight += part.weight;
     merged.mean += part.weight * (part.mean - origin);
   }
-  if (!(merged.weight > 0.0)) throw std::invalid_argument("merge: no part has a positive weight");
+  if (!(merged.weight > 0.0)) throw std::invalid_argument("merge: no Gaussian has a positive weight");
   merged.mean /= merged.weight;  // eq. (9)
   for (const Gaussian<D>& part : parts) {
     const Vector<D> spread = part.mean - origin - merged.mean;

@@ -19,7 +19,7 @@ std::string poseFault(const Pose& pose) {
   } else if (!q.coeffs().allFinite()) {
     text << "the quaternion (w " << q.w() << ", x " << q.x() << ", y " << q.y() << ", z " << q.z() << ") is not finite";
   } else if (norm == 0.0) {
-    text << "the quaternion is zero: no rotation is w = 1, x = y = z = 0";
+    text << "the quaternion is zero: use w = 1, x = y = z = 0 for no rotation";
   } else if (!(std::abs(norm - 1.0) <= kQuaternionTolerance)) {
     text << "the quaternion (w " << q.w() << ", x " << q.x() << ", y " << q.y() << ", z " << q.z() << ") has norm "
          << norm << " instead of 1: check the order of its numbers";
@@ -40,7 +40,7 @@ Pose Pose::inverse() const {
 }
 
 PoseCovariance covarianceOfInverse(const Pose& pose, const PoseCovariance& covariance) {
-  // An error (dt, dr) of the pose, seen from the other frame: rotated, and moved to the other origin.
+  // An error (dt, dr) of the pose, expressed in the other frame: it is rotated, and moved to the other origin.
   const Eigen::Matrix3d back = pose.rotation.toRotationMatrix().transpose();
   PoseCovariance j = PoseCovariance::Zero();
   j.topRows<3>() = back * poseJacobian(-pose.translation);

@@ -5,8 +5,8 @@
 
 namespace gaussmap::detail {
 
-/// d (moved point) / d (translation, small rotation), in the order of PoseCovariance. `arm` = the moved point relative
-/// to the moved origin, R p.
+/// Returns the derivative of a transformed point with respect to (translation, small rotation), in the order of
+/// PoseCovariance. `arm` is the transformed point relative to the transformed origin, R p.
 inline Eigen::Matrix<double, 3, 6> poseJacobian(const Eigen::Vector3d& arm) {
   Eigen::Matrix<double, 3, 6> result;
   result << 1, 0, 0, 0, arm.z(), -arm.y(),  //

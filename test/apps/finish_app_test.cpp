@@ -26,7 +26,7 @@ TEST_F(Apps, AFinishedMapIsNotFinishedAgainAndTakesNoScans) {
   succeed({"finish", scene("map.gmap"), "-o", own("final.gmap"), "--finest-scale", "1"});
   EXPECT_EQ(infoOf(own("final.gmap"))["scales"][0]["cells"], 0);
   expectDataError("already final", {"finish", own("final.gmap"), "-o", own("x.gmap")});
-  expectDataError("takes no more scans", {"pcd2map", scene("scans"), "--update", own("final.gmap")});
+  expectDataError("accepts no more scans", {"pcd2map", scene("scans"), "--update", own("final.gmap")});
   expectUsageError("--finest-scale", {"finish", scene("map.gmap"), "-o", own("x.gmap"), "--finest-scale", "3"});
   expectUsageError("destroy the input", {"finish", scene("map.gmap"), "-o", scene("map.gmap"), "--force"});
 }

@@ -107,7 +107,7 @@ TEST_F(Interrupted, ByASecondWriterFinishWhileThatOneIsTold) {
     ASSERT_TRUE(first.runTo(writesPart, 2));
     const std::string bytes = contentsOf(own("old.gmap"));
     for (const std::vector<std::string>& second : writers())
-      expectDataError("is being written by somebody else", second);
+      expectDataError("is being written by another process", second);
     EXPECT_EQ(contentsOf(own("old.gmap")), bytes);
     EXPECT_EQ(first.outcome().code, 0);
     EXPECT_FALSE(fs::exists(own("old.gmap.part")));

@@ -70,13 +70,13 @@ TEST_F(UpdateApp, SaysWhatIsWrongWithItsOptions) {
 
 TEST_F(UpdateApp, SaysWhatIsWrongWithItsInputAndLeavesTheMap) {
   expectDataError("does not exist", {"pcd2map", scan(3), "--update", own("none.gmap")});
-  expectDataError("is no map", {"pcd2map", scan(3), "--update", scan(2)});
+  expectDataError("is not a map", {"pcd2map", scan(3), "--update", scan(2)});
   const std::string map = mapOf(2, "1"), bytes = contentsOf(map);
   expectDataError("does not exist", {"pcd2map", own("none.pcd"), "--update", map});
   expectDataError("beyond --max-range", {"pcd2map", scan(3), "--update", map, "--max-range", "0.001"});
   EXPECT_EQ(contentsOf(map), bytes);
   succeed({"compress", map, "-o", own("small.gmap"), "--max-error", "0.5"});
-  expectDataError("takes no more scans", {"pcd2map", scan(3), "--update", own("small.gmap")});
+  expectDataError("accepts no more scans", {"pcd2map", scan(3), "--update", own("small.gmap")});
 }
 
 }  // namespace

@@ -100,7 +100,7 @@ TEST_F(ViewApp, RefusesWrongUsageAndWrongData) {
   expectUsageError("--zoom", {"view", map(), "--png", png, "--zoom", "nan"});
   expectUsageError("map", {"view"});
   expectDataError("no.gmap", {"view", own("no.gmap"), "--png", png});
-  expectDataError("not of Gaussians", {"view", scene("truth.pcd").string(), "--png", png});
+  expectDataError("not Gaussians", {"view", scene("truth.pcd").string(), "--png", png});
   directory_.write("mine.png", "mine");
   expectUsageError("--force", {"view", map(), "--png", own("mine.png")});
 }

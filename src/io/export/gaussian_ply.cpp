@@ -24,7 +24,7 @@ namespace {
 
 constexpr int kFacets = 8;                         // facets of an ellipsoid around its equator
 constexpr int kRest = 45;                          // coefficients of a splat's higher spherical harmonics
-constexpr double kHarmonic = 0.28209479177387814;  // the constant one, 1 / (2 sqrt(pi))
+constexpr double kHarmonic = 0.28209479177387814;  // the constant spherical harmonic, 1 / (2 sqrt(pi))
 constexpr double kMinDeviation = 1e-9;             // [m]; the logarithm of 0 would not be finite
 
 /// A Gaussian and its values that all three kinds of file need.
@@ -137,7 +137,7 @@ void writeEllipsoids(WriteBuffer& buffer, const Items& items, double sigma) {
   const std::size_t corners = sphere.vertices.size();
   if (items.size() > std::size_t{std::numeric_limits<std::int32_t>::max()} / corners)
     throw std::length_error(std::to_string(items.size()) +
-                            " ellipsoids are too many for one mesh: take a coarser scale");
+                            " ellipsoids are too many for one mesh: use a coarser scale");
   buffer.addText(begin(items.origin()) + vertexElement(items.size() * corners) +
                  properties("uchar", {"red", "green", "blue"}) + "element face " +
                  std::to_string(items.size() * sphere.triangles.size()) +

@@ -48,7 +48,8 @@ std::map<Corner, GaussianRecords> bySquare(const GaussianRecords& all, int size)
       if (axis == 2) continue;
       const double low = std::floor(static_cast<double>(record.mean[axis]) / size) * size;
       if (!(std::abs(low) < static_cast<double>(std::numeric_limits<std::int32_t>::max() - size)))
-        throw std::out_of_range("a Gaussian at " + numberText(mean) + " m: the index has 32-bit metres");
+        throw std::out_of_range("a Gaussian at " + numberText(mean) +
+                                " m is too far away: the index of the tiles stores 32-bit metres");
       corner[axis] = static_cast<std::int64_t>(low);
     }
     squares[corner].records.push_back(record);
@@ -63,10 +64,10 @@ class PartFolder {
     part_ += ".part";
     std::error_code error;
     if (fs::exists(target_, error) && !(fs::is_directory(target_, error) && fs::is_empty(target_, error)))
-      throw FileError(target_, "exists already and is kept");
+      throw FileError(target_, "exists already and is not overwritten");
     if (!fs::create_directory(part_, error))
-      throw FileError(part_, error ? "cannot be made: " + error.message()
-                                   : "is there already: somebody writes these tiles, or died; remove it");
+      throw FileError(part_, error ? "cannot be created: " + error.message()
+                                   : "exists already: another process is writing these tiles; if none is, remove it");
   }
   ~PartFolder() {
     std::error_code ignored;
@@ -78,7 +79,7 @@ class PartFolder {
   void commit() {
     std::error_code error;
     fs::rename(part_, target_, error);
-    if (error) throw FileError(target_, "cannot get its name: " + error.message());
+    if (error) throw FileError(target_, "cannot be renamed to its final name: " + error.message());
     done_ = true;
   }
 
@@ -113,7 +114,7 @@ double numberOf(const fs::path& path, std::size_t line, const std::string& text)
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !(value > 0.0) || !std::isfinite(value))
-    throw FileError(path, "line " + std::to_string(line) + ": '" + text + "' is no positive number");
+    throw FileError(path, "line " + std::to_string(line) + ": '" + text + "' is not a positive number");
   return value;
 }
 
@@ -137,11 +138,12 @@ Index readIndex(const fs::path& path) {
     else if (key == "y_resolution")
       index.y_size = numberOf(path, lines.number(), rest);
     else if (fs::path(key).filename() != key || key == "." || key == "..")
-      throw FileError(path, "line " + std::to_string(lines.number()) + ": '" + key + "' is no file beside it");
+      throw FileError(path,
+                      "line " + std::to_string(lines.number()) + ": '" + key + "' is not a file in the same folder");
     else
       index.files.push_back(key);
   }
-  if (index.x_size == 0.0 || index.y_size == 0.0) throw FileError(path, "lacks x_resolution or y_resolution");
+  if (index.x_size == 0.0 || index.y_size == 0.0) throw FileError(path, "has no x_resolution or no y_resolution");
   if (index.files.empty()) throw FileError(path, "names no tile");
   return index;
 }
@@ -186,7 +188,7 @@ GaussianMap<3> loadTiles(const fs::path& folder) {
   GaussianRecords all;
   for (const std::string& file : index.files) {
     GaussianRecords tile = loadRecordsPcd(folder / file);
-    if (!tile.origin.isZero()) throw FileError(folder / file, "is no tile: its VIEWPOINT shifts it");
+    if (!tile.origin.isZero()) throw FileError(folder / file, "is not a tile: its VIEWPOINT is not the origin");
     all.records.insert(all.records.end(), tile.records.begin(), tile.records.end());
   }
   try {
@@ -194,7 +196,7 @@ GaussianMap<3> loadTiles(const fs::path& folder) {
     if (!index.options || !isPlainFinest(map, all) || index.options->scales == 1) return map;
     return build<3>(map.scale(0), *index.options);
   } catch (const std::logic_error& error) {
-    throw FileError(path, std::string("its tiles are no map: ") + error.what());
+    throw FileError(path, std::string("its tiles do not form a map: ") + error.what());
   }
 }
 

@@ -23,7 +23,7 @@ inline void checkSegments(const SegmentMap& map) {
   std::size_t next = 0;
   for (std::size_t i = 0; i < map.chains.size(); ++i) {
     if (map.chains[i].first != next || map.chains[i].last <= next || map.chains[i].last > map.segments.size())
-      throw std::invalid_argument("chain " + std::to_string(i) + " does not go on where the one before it ends");
+      throw std::invalid_argument("chain " + std::to_string(i) + " does not start where the chain before it ends");
     next = map.chains[i].last;
   }
   if (next != map.segments.size()) throw std::invalid_argument("segment " + std::to_string(next) + " is in no chain");

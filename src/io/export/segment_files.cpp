@@ -84,7 +84,7 @@ std::vector<Record> readRecords(const std::filesystem::path& path) {
   std::vector<Record> records;
   records.reserve(reader.size());
   readPoints(reader, fieldsOf(record), "map of segments", [&](std::size_t) { records.push_back(record); });
-  if (records.size() % 2 != 0) throw FileError(path, "is no map of segments: an odd number of end points");
+  if (records.size() % 2 != 0) throw FileError(path, "is not a map of segments: the number of end points is odd");
   return records;
 }
 
@@ -120,10 +120,10 @@ SegmentMap loadSegmentsPcd(const std::filesystem::path& path) {
     const Record& record = records[2 * i];
     map.segments.push_back(toSegment(record, records[2 * i + 1]));
     if (!isPossible(map.segments.back()))
-      throw FileError(path, "row " + std::to_string(i) + " is no segment: a value is impossible or not finite");
+      throw FileError(path, "row " + std::to_string(i) + " is not a segment: a value is impossible or not finite");
     if (map.chains.empty() || record.chain != map.chains.size() - 1) {
       if (record.chain != map.chains.size())
-        throw FileError(path, "row " + std::to_string(i) + " is of chain " + std::to_string(record.chain) +
+        throw FileError(path, "row " + std::to_string(i) + " belongs to chain " + std::to_string(record.chain) +
                                   ", but the next chain is number " + std::to_string(map.chains.size()));
       map.chains.push_back({i, i, record.closed != 0});
     }

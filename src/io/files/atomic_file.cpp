@@ -18,14 +18,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMaxAtOnce = std::size_t{1} << 30;  // write() takes no more than 2 GB
+constexpr std::size_t kMaxAtOnce = std::size_t{1} << 30;  // write() accepts at most 2 GB per call
 
 fs::path resolved(const fs::path& target) {
   std::error_code error;
   if (!fs::is_symlink(fs::symlink_status(target, error))) return target;
   fs::path real = fs::weakly_canonical(target, error);
-  if (error || fs::is_symlink(fs::symlink_status(real, error)))
-    throw FileError(target, "is a symbolic link that leads nowhere");
+  if (error || fs::is_symlink(fs::symlink_status(real, error))) throw FileError(target, "is a broken symbolic link");
   return real;
 }
 
@@ -55,7 +54,7 @@ bool AtomicFile::openLocked() {
   if (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
     const int reason = errno;
     closeFile();
-    if (reason == EWOULDBLOCK) throw FileError(target_, "is being written by somebody else (" + part_.string() + ")");
+    if (reason == EWOULDBLOCK) throw FileError(target_, "is being written by another process (" + part_.string() + ")");
     fail("cannot be locked", reason);
   }
   if (hasName(file_, part_.c_str())) {
@@ -73,7 +72,7 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::write(const void* data, std::size_t bytes) {
-  if (file_ < 0) throw FileError(target_, "is finished and takes no more bytes");
+  if (file_ < 0) throw FileError(target_, "is complete: nothing more can be written");
   const char* next = static_cast<const char*>(data);
   while (bytes > 0) {
     const ssize_t written = ::write(file_, next, std::min(bytes, kMaxAtOnce));
@@ -87,10 +86,10 @@ void AtomicFile::write(const void* data, std::size_t bytes) {
 }
 
 void AtomicFile::commit() {
-  if (file_ < 0) throw FileError(target_, "is finished already");
+  if (file_ < 0) throw FileError(target_, "is complete already");
   if (!hasName(file_, part_.c_str()))
-    throw FileError(part_, "was removed or replaced by somebody else while it was written");
-  if (::fsync(file_) != 0) fail("cannot be brought to the disk", errno);
+    throw FileError(part_, "was removed or replaced by another process while it was written");
+  if (::fsync(file_) != 0) fail("cannot be synced to the disk", errno);
   if (std::rename(part_.c_str(), target_.c_str()) != 0) fail("cannot be renamed to its final name", errno);
   closeFile();
 
@@ -101,7 +100,7 @@ void AtomicFile::commit() {
   ::close(directory);
   // Some file systems cannot sync a folder and return EINVAL. Nothing more can be done then.
   if (reason != 0 && reason != EINVAL)
-    throw FileError(target_, "is complete, but its folder cannot be brought to the disk: " +
+    throw FileError(target_, "is complete, but its folder cannot be synced to the disk: " +
                                  std::generic_category().message(reason));
 }
 

@@ -17,7 +17,7 @@ SpillFile::SpillFile(const std::filesystem::path& folder) : folder_(folder) {
   if (file_ >= 0) return;
   std::string name = (folder / ".gaussmap-XXXXXX").string();  // for file systems without O_TMPFILE
   file_ = ::mkostemp(name.data(), O_CLOEXEC);
-  if (file_ < 0) fail("no temporary file can be made there", errno);
+  if (file_ < 0) fail("no temporary file can be created in this folder", errno);
   ::unlink(name.c_str());
 }
 
@@ -30,7 +30,7 @@ SpillFile::Span SpillFile::append(const std::string& bytes) {
   for (std::size_t done = 0; done < bytes.size();) {
     const ssize_t written = ::pwrite(file_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(end_ + done));
     if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) fail("a temporary file there cannot be written", written < 0 ? errno : ENOSPC);
+    if (written <= 0) fail("a temporary file in this folder cannot be written", written < 0 ? errno : ENOSPC);
     done += static_cast<std::size_t>(written);
   }
   end_ += bytes.size();
@@ -42,7 +42,7 @@ std::string SpillFile::read(const Span& span) const {
   for (std::size_t done = 0; done < bytes.size();) {
     const ssize_t got = ::pread(file_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(span.begin + done));
     if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) fail("a temporary file there cannot be read", got < 0 ? errno : EIO);
+    if (got <= 0) fail("a temporary file in this folder cannot be read", got < 0 ? errno : EIO);
     done += static_cast<std::size_t>(got);
   }
   return bytes;

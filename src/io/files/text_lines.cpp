@@ -73,7 +73,7 @@ struct TextLines::GzipSource : Source {
       ended = !startsWith(rest, kGzipMagic);  // several gzip files may be joined
       if (!ended) inflateReset(&stream);
       if (ended && rest.find_first_not_of('\0') != std::string_view::npos)
-        damage = "there are " + std::to_string(rest.size()) + " bytes behind the gzip data";
+        damage = "there are " + std::to_string(rest.size()) + " bytes after the gzip data";
     } else if (state == Z_BUF_ERROR || (state == Z_OK && rest.empty() && filled == 0)) {
       ended = true;
       damage = "the gzip data end too early: the file was cut off";

@@ -36,7 +36,7 @@ OrderedScale<D> inKeyOrder(const Tile<D>& tile, const MapOptions& options, int s
       if (!tile.gaussians.empty()) scale.addGaussian(tile.gaussians[i]);
       if (!tile.log_odds.empty()) scale.addLogOdds(tile.log_odds[i]);
       if (s + 1 == options.scales) continue;
-      if (i >= tile.labels.size()) throw std::invalid_argument("a Gaussian without a parent");
+      if (i >= tile.labels.size()) throw std::invalid_argument("a Gaussian has no parent");
       labels.push_back(tile.labels[i]);
     }
   }

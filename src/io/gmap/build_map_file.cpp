@@ -48,7 +48,7 @@ struct SpilledCuts {
   SpillFile::Span gains;
 };
 
-/// A complete tile, on the disk.
+/// A compressed tile, on disk.
 struct SpilledTile {
   TileRow<3> row;  // without its bytes
   SpillFile::Span bytes;
@@ -282,17 +282,18 @@ BuiltMapFile buildMapFile(const Scans& scans, const AccumulateOptions& reading, 
   require(options.max_memory >= kMinBuildMemory, "max_memory", static_cast<double>(options.max_memory),
           "must be at least " + std::to_string(kMinBuildMemory) + " bytes");
   if (options.refine.method != RefineMethod::Agglomerate)
-    throw std::invalid_argument("method: only agglomeration goes tile by tile");
-  if (options.save.precision != Precision::Exact) throw std::invalid_argument("precision: build first, then finish");
+    throw std::invalid_argument("method: only agglomeration works tile by tile");
+  if (options.save.precision != Precision::Exact)
+    throw std::invalid_argument("precision: must be exact; build first, then finish");
   if (reading.resolution != map.resolution)
-    throw std::invalid_argument("resolution: the scans are counted in other cells than the map has");
+    throw std::invalid_argument("resolution: must be the same for the scans and the map");
   if (!std::holds_alternative<PerCell>(options.budget) && !std::holds_alternative<MaxGaussians>(options.budget))
     throw std::invalid_argument("budget: MaxBytes and MaxError need the whole map; build first, then refine");
   if (options.refine.curves) throw std::invalid_argument("curves: need the whole map; build first, then refine");
   checkRefinement(options.budget, options.refine, Grid<3>(map).scales());
   std::error_code error;
   if (!options.save.overwrite && std::filesystem::exists(path, error))
-    throw FileError(path, "exists already and is kept");
+    throw FileError(path, "exists already and is not overwritten");
   AtomicFile file(path);
   const std::filesystem::path folder = file.target().has_parent_path() ? file.target().parent_path() : ".";
   Builder builder(map, folder, options);

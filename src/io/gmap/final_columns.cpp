@@ -13,11 +13,11 @@
 namespace gaussmap::detail {
 namespace {
 
-/// Columns of a Gaussian: weight, mean, factor of the covariance.
+/// Number of columns per Gaussian: weight, mean, factor of the covariance.
 template <int D>
 constexpr std::uint64_t kNumbers = 1 + 2 * D + QuantisedGaussian<D>::kLower;
 
-constexpr std::int64_t kLargestNumber = std::int64_t{1} << 62;  // numbers are smaller, so that differences fit
+constexpr std::int64_t kLargestNumber = std::int64_t{1} << 62;  // all numbers are smaller, so differences fit
 
 int widthOf(std::uint64_t most) {
   int width = 0;
@@ -25,7 +25,8 @@ int widthOf(std::uint64_t most) {
   return width;
 }
 
-/// A column of whole numbers: how wide (1 byte), the least of them (8 bytes), how far above it each is.
+/// Writes a column of whole numbers: the width in bytes (1 byte), the minimum (8 bytes), then each number
+/// minus the minimum.
 template <typename ValueAt>
 void writeNumbers(std::string& bytes, std::size_t count, int least_width, const ValueAt& value) {
   std::int64_t low = std::numeric_limits<std::int64_t>::max(), high = std::numeric_limits<std::int64_t>::min();
@@ -45,10 +46,11 @@ void readNumbers(ColumnReader& columns, std::size_t count, int least_width, cons
   std::uint64_t width = 0, low = 0;
   columns.read(1, 1, [&](std::size_t, std::uint64_t bits) { width = bits; });
   columns.read(1, 8, [&](std::size_t, std::uint64_t bits) { low = bits; });
-  if (width < static_cast<std::uint64_t>(least_width) || width > 8) throw std::runtime_error("a column of wrong width");
+  if (width < static_cast<std::uint64_t>(least_width) || width > 8)
+    throw std::runtime_error("a column has a wrong width");
   columns.read(count, static_cast<int>(width), [&](std::size_t i, std::uint64_t bits) {
     const auto number = static_cast<std::int64_t>(low + bits);
-    if (number <= -kLargestNumber || number >= kLargestNumber) throw std::runtime_error("a number that is too large");
+    if (number <= -kLargestNumber || number >= kLargestNumber) throw std::runtime_error("a number is too large");
     take(i, number);
   });
 }
@@ -86,7 +88,7 @@ void writeFinalColumns(std::string& bytes, const Tile<D>& tile, const TileAddres
 template <int D>
 Tile<D> readFinalColumns(const char* bytes, std::size_t size, const FinalContents& contents,
                          const TileAddress<D>& address, const MapOptions& options) {
-  const std::uint64_t cells = contents.cells, gaussians = contents.gaussians;  // a binding cannot be captured
+  const std::uint64_t cells = contents.cells, gaussians = contents.gaussians;  // lambdas cannot capture bindings
   if (gaussians > size / kNumbers<D> || cells > gaussians) throw std::runtime_error("shorter than its cells need");
   ColumnReader columns(bytes, size);
   Tile<D> tile;
@@ -96,13 +98,13 @@ Tile<D> readFinalColumns(const char* bytes, std::size_t size, const FinalContent
     readNumbers(columns, cells, 0, [&](std::size_t i, std::int64_t number) {
       const std::int64_t first = std::int64_t{address.tile[axis]} * address.span;
       if (number < 0 || number >= address.span || first + number != static_cast<std::int32_t>(first + number))
-        throw std::runtime_error("a cell that lies outside it");
+        throw std::runtime_error("a cell lies outside the tile");
       tile.keys[i][axis] = static_cast<std::int32_t>(first + number);
     });
   std::uint64_t counted = 0;
   readNumbers(columns, cells, 0, [&](std::size_t i, std::int64_t number) {
     if (number < 1 || static_cast<std::uint64_t>(number) > gaussians)
-      throw std::runtime_error("a cell with a wrong number of Gaussians");
+      throw std::runtime_error("a cell has a wrong number of Gaussians");
     tile.counts[i] = static_cast<std::uint32_t>(number);
     counted += tile.counts[i];
   });
@@ -124,7 +126,7 @@ Tile<D> readFinalColumns(const char* bytes, std::size_t size, const FinalContent
     tile.labels.resize(gaussians);
     readNumbers(columns, gaussians, 0, [&](std::size_t i, std::int64_t number) {
       if (number < 0 || number > std::numeric_limits<std::uint32_t>::max())
-        throw std::runtime_error("a parent that is none");
+        throw std::runtime_error("the parent of a Gaussian is impossible");
       tile.labels[i] = static_cast<std::uint32_t>(number);
     });
   }

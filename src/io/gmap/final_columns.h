@@ -7,14 +7,15 @@
 
 namespace gaussmap::detail {
 
-/// Appends the cells of a tile as a final map keeps them: columns of whole numbers, each as wide as it needs, the
-/// Gaussians quantised (io/quantise.h), made from the moments where the tile has those. Which columns there are and how
-/// long they are stands in front of them, not here. Throws std::domain_error as quantise().
+/// Appends the cells of a tile in the format of a final map: columns of whole numbers, each as wide as necessary.
+/// The Gaussians are quantised (io/gmap/quantise.h); those of a tile with moments are computed from the moments.
+/// The columns do not state their number and length; the caller stores both in front of them. Throws
+/// std::domain_error like quantise().
 template <int D>
 void writeFinalColumns(std::string& bytes, const Tile<D>& tile, const TileAddress<D>& address,
                        const MapOptions& options);
 
-/// Which columns there are.
+/// The columns of a tile of a final map.
 struct FinalContents {
   std::uint64_t cells = 0;
   std::uint64_t gaussians = 0;
@@ -22,8 +23,8 @@ struct FinalContents {
   bool has_log_odds = false;
 };
 
-/// What writeFinalColumns() appended. Throws std::runtime_error or std::domain_error, saying what is wrong. Whoever
-/// gives the bytes gives at least one for every number of a Gaussian: it allocates no more than 16 times as many.
+/// Reads the columns of writeFinalColumns(). Throws std::runtime_error or std::domain_error with the reason. Every
+/// number of a Gaussian takes at least one byte, so this allocates at most 16 times `size`.
 template <int D>
 Tile<D> readFinalColumns(const char* bytes, std::size_t size, const FinalContents& contents,
                          const TileAddress<D>& address, const MapOptions& options);

@@ -9,11 +9,11 @@
 
 namespace gaussmap::detail {
 
-/// Which cells of a scale lie in which tile: runs of cells in key order.
+/// Returns the cells of each tile of a scale, as ranges of cells in key order.
 template <int D>
 std::map<CellKey<D>, std::vector<IndexRange>> cellsByTile(const MapScale<D>& scale, std::int32_t span);
 
-/// A tile of these cells of scale s.
+/// Returns a tile of these cells of scale s.
 template <int D>
 Tile<D> makeTile(const GaussianMap<D>& map, int s, const std::vector<IndexRange>& runs);
 

@@ -27,9 +27,9 @@ Tile<D> readTiles(const Database& database, int s, const MapOptions& options) {
     for (std::size_t axis = 0; axis < D; ++axis) {
       const std::int64_t coordinate = select.integer(static_cast<int>(axis));
       address.tile[axis] = static_cast<std::int32_t>(coordinate);
-      if (address.tile[axis] != coordinate) throw std::invalid_argument("a tile that lies beyond all cells");
+      if (address.tile[axis] != coordinate) throw std::invalid_argument("a tile lies beyond all cells");
     }
-    if (last && !(*last < address.tile)) throw std::invalid_argument("tiles out of order or there twice");
+    if (last && !(*last < address.tile)) throw std::invalid_argument("tiles are out of order or occur twice");
     last = address.tile;
     appendTile<D>(all, decodeRow<D>(database.path(), select.blob(3), address, options));
   }
@@ -52,7 +52,7 @@ GaussianMap<D> load(const std::filesystem::path& path) {
       const auto stated = numberIn<std::size_t>(path, entries, "cells." + std::to_string(s));
       if (cells.keys.size() != stated)
         throw std::invalid_argument("scale " + std::to_string(s) + " has " + std::to_string(cells.keys.size()) +
-                                    " cells where " + std::to_string(stated) + " were saved");
+                                    " cells, but " + std::to_string(stated) + " were saved");
     }
     return assembleMap<D>(options, std::move(scales));
   } catch (const std::invalid_argument& error) {

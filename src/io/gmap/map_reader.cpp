@@ -57,7 +57,8 @@ KeyRange<D> finestCells(const Box<D>& box, double side) {
   for (int axis = 0; axis < D; ++axis) {
     if (!(box.low(axis) <= box.high(axis)))
       throw std::invalid_argument("the box reaches from " + numberText(box.low(axis)) + " to " +
-                                  numberText(box.high(axis)) + " m along axis " + std::to_string(axis));
+                                  numberText(box.high(axis)) + " m along axis " + std::to_string(axis) +
+                                  ": low must be at most high");
     range.low[static_cast<std::size_t>(axis)] = keyOf(box.low(axis));
     range.high[static_cast<std::size_t>(axis)] = keyOf(box.high(axis));
   }

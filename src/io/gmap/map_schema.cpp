@@ -38,7 +38,7 @@ Database openOnce(const std::filesystem::path& path, Database::Mode mode) {
   if (!file) throw FileError(path, "cannot be opened for reading");
   file.read(head.data(), static_cast<std::streamsize>(head.size()));
   if (file.gcount() == 0) throw FileError(path, "is empty");
-  if (head != start) throw FileError(path, "is no map: it does not begin like a .gmap");
+  if (head != start) throw FileError(path, "is not a map: it does not start like a .gmap file");
   Database database(path, mode);
   Statement id(database, "PRAGMA application_id");
   if (!id.step() || id.integer(0) != kMapFileId) throw FileError(path, "is an SQLite database, but not a gaussmap map");
@@ -130,8 +130,7 @@ template <int D>
 MapOptions readOptions(const std::filesystem::path& path, const MapMetadata& entries) {
   const int dimension = numberIn<int>(path, entries, "dimension");
   if (dimension != D)
-    throw FileError(path,
-                    "holds a map of dimension " + std::to_string(dimension) + ", asked for is " + std::to_string(D));
+    throw FileError(path, "holds a map of dimension " + std::to_string(dimension) + ", expected " + std::to_string(D));
   return {numberIn<double>(path, entries, "resolution"), numberIn<int>(path, entries, "ratio"),
           numberIn<int>(path, entries, "scales"), numberIn<double>(path, entries, "noise")};
 }
@@ -172,7 +171,7 @@ std::vector<CellKey<D>> tilesWithin(const Database& database, int scale, const C
     for (std::size_t axis = 0; axis < D; ++axis)
       tile[axis] = static_cast<std::int32_t>(select.integer(static_cast<int>(axis)));
     if (!tiles.empty() && !(tiles.back() < tile))
-      throw FileError(database.path(), "is damaged: tiles out of order or there twice");
+      throw FileError(database.path(), "is damaged: tiles are out of order or occur twice");
     tiles.push_back(tile);
   }
   return tiles;

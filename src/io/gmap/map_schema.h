@@ -54,12 +54,12 @@ MapMetadata ownEntries(const MapOptions& options, const std::vector<std::size_t>
 template <typename Number>
 Number numberIn(const std::filesystem::path& path, const MapMetadata& entries, const std::string& name) {
   const auto entry = entries.find(name);
-  if (entry == entries.end()) throw FileError(path, "its metadata lack '" + name + "'");
+  if (entry == entries.end()) throw FileError(path, "has no metadata entry '" + name + "'");
   Number value{};
   const char* end = entry->second.data() + entry->second.size();
   const auto [stop, error] = std::from_chars(entry->second.data(), end, value);
   if (error != std::errc() || stop != end)
-    throw FileError(path, "its metadata give '" + entry->second + "' for '" + name + "'");
+    throw FileError(path, "has the metadata entry '" + name + "' = '" + entry->second + "', expected a number");
   return value;
 }
 

@@ -45,8 +45,8 @@ struct Header {
     }
     if (numberIn<int>(path, entries, "grows") != 1)
       throw FileError(path,
-                      "takes no more scans: it is final, compressed or was learnt, so that the sums of its points are "
-                      "not there; update the map that it was made from");
+                      "accepts no more scans: it is final, compressed or learnt, so it has no moments; update the map "
+                      "that it was made from");
     occupancy = numberIn<int>(path, entries, "occupancy") != 0;
     try {
       options = Grid<D>(options).options();
@@ -149,7 +149,7 @@ class Updater {
   }
 
  private:
-  /// How many Gaussians a coarse scale of the whole map may have when it has so many cells.
+  /// Returns the maximum number of Gaussians of a coarse scale of the whole map if the scale has this many cells.
   std::size_t maxGaussians(std::size_t s, std::size_t cells) const {
     constexpr double kRounding = 1e-9;
     const double per_cell = options_.budget ? *options_.budget
@@ -191,7 +191,7 @@ class Updater {
         if (bytes.empty()) continue;
         OldTile<D>& old = old_[at][tile];
         old.all = decodeRow<D>(path_, bytes, {s, tile, span_}, header_.options);
-        if (s == 0 && old.all.moments.empty()) throw FileError(path_, "is damaged: a finest tile without sums");
+        if (s == 0 && old.all.moments.empty()) throw FileError(path_, "is damaged: a finest tile has no moments");
         const auto isInside = [&](const CellKey<D>& key) {
           return roots_.count(grid_.ancestor(key, s, grid_.scales() - 1)) > 0;
         };
@@ -205,7 +205,7 @@ class Updater {
       for (int s = 0; s < grid_.scales(); ++s)
         fits &= map.cellCount(s) <= header_.cells[std::size_t(s)] &&
                 map.gaussianCount(s) <= header_.gaussians[std::size_t(s)];
-      if (!fits) throw std::invalid_argument("its tiles are not what its metadata tell");
+      if (!fits) throw std::invalid_argument("its tiles do not match its metadata");
       return map;
     } catch (const std::invalid_argument& error) {
       throw FileError(path_, std::string("is damaged: ") + error.what());

@@ -68,7 +68,8 @@ template <int D>
 void save(const std::filesystem::path& path, const GaussianMap<D>& map, const MapMetadata& metadata,
           const SaveOptions& options) {
   std::error_code error;
-  if (!options.overwrite && std::filesystem::exists(path, error)) throw FileError(path, "exists already and is kept");
+  if (!options.overwrite && std::filesystem::exists(path, error))
+    throw FileError(path, "exists already and is not overwritten");
   AtomicFile file(path);
   {
     Database database(file.partPath(), Database::Mode::CreateForBulkWrite);

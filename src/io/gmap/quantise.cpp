@@ -8,16 +8,16 @@
 namespace gaussmap::detail {
 namespace {
 
-constexpr double kLowerStep = 1.0 / 32.0;  // of the diagonal of the row
-constexpr double kMeanStep = 1.0 / 8.0;    // of the standard deviation with the other coordinates fixed
+constexpr double kLowerStep = 1.0 / 32.0;  // relative to the diagonal of the row
+constexpr double kMeanStep = 1.0 / 8.0;    // relative to the standard deviation with the other coordinates fixed
 constexpr double kLogOddsStep = 1.0 / 16.0;
 constexpr double kMaxLogOdds = 1e6;
-constexpr double kMaxOffset = 0.501;       // of a mean from the cell's centre, in sides: as GaussianMap allows
-constexpr std::int64_t kWeightSteps = 16;  // from one power of two to the next
+constexpr double kMaxOffset = 0.501;       // of a mean from the cell's centre, in sides of the cell; as in GaussianMap
+constexpr std::int64_t kWeightSteps = 16;  // steps from one power of two to the next
 constexpr std::int64_t kMaxExponent = 1000;
 
 constexpr std::int64_t kOctave = 16;
-/// 2^(k / 16), and 2^((k + 1/2) / 16), where one rounds to the next.
+/// kPowers[k] = 2^(k / 16). kBetween[k] = 2^((k + 1/2) / 16), where the rounding changes from k to k + 1.
 constexpr double kPowers[kOctave] = {1.0,
                                      1.0442737824274138,
                                      1.0905077326652577,
@@ -39,7 +39,7 @@ constexpr double kBetween[kOctave] = {1.0218971486541166, 1.0671404006768237, 1.
                                       1.4451808069770467, 1.5091644275934228, 1.5759808451078865, 1.645755478153965,
                                       1.718619298122478,  1.7947090750031072, 1.8741676341103,    1.9571441241754002};
 
-/// A positive number in sixteenths of an octave.
+/// Returns a positive number in steps of 1/16 octave, rounded.
 std::int64_t sixteenths(double value) {
   int exponent = 0;
   const double mantissa = 2.0 * std::frexp(value, &exponent);  // [1, 2)
@@ -49,12 +49,12 @@ std::int64_t sixteenths(double value) {
 
 double fromSixteenths(std::int64_t number) {
   const std::int64_t octave = (number >= 0 ? number : number - (kOctave - 1)) / kOctave;
-  if (std::abs(octave) > kMaxExponent) throw std::domain_error("a number that is too large or too small");
+  if (std::abs(octave) > kMaxExponent) throw std::domain_error("a number is too large or too small");
   return std::ldexp(kPowers[number - octave * kOctave], static_cast<int>(octave));
 }
 
 std::int64_t wholeNumber(double value) {
-  if (!(std::abs(value) < 0x1.0p62)) throw std::domain_error("numbers that are too large or not finite");
+  if (!(std::abs(value) < 0x1.0p62)) throw std::domain_error("numbers are too large or not finite");
   return static_cast<std::int64_t>(std::nearbyint(value));
 }
 
@@ -69,13 +69,13 @@ Factor<D> cholesky(const Matrix<D>& cov) {
       double rest = cov(static_cast<int>(row), static_cast<int>(column));
       for (std::size_t k = 0; k < column; ++k) rest -= factor[row][k] * factor[column][k];
       if (row == column && !(rest > 0.0 && std::isfinite(rest)))
-        throw std::domain_error("a covariance that is not positive definite");
+        throw std::domain_error("a covariance is not positive definite");
       factor[row][column] = row == column ? std::sqrt(rest) : rest / factor[column][column];
     }
   return factor;
 }
 
-/// Steps of the mean along every axis.
+/// Returns the step of the mean along every axis.
 template <int D>
 Vector<D> meanSteps(const Factor<D>& factor) {
   Factor<D> inverse{};
@@ -108,7 +108,7 @@ Factor<D> restoreFactor(const QuantisedGaussian<D>& numbers, double noise) {
 }
 
 std::int64_t quantiseWeight(double weight) {
-  if (!(weight > 0.0 && std::isfinite(weight))) throw std::domain_error("a Gaussian without weight");
+  if (!(weight > 0.0 && std::isfinite(weight))) throw std::domain_error("a weight is not positive or not finite");
   int exponent = 0;
   const double digits = std::nearbyint(std::frexp(weight, &exponent) * 2.0 * kWeightSteps);  // 16 ... 32
   return kWeightSteps * exponent + static_cast<std::int64_t>(digits) - kWeightSteps;
@@ -116,7 +116,7 @@ std::int64_t quantiseWeight(double weight) {
 
 double restoreWeight(std::int64_t number) {
   const std::int64_t exponent = (number >= 0 ? number : number - (kWeightSteps - 1)) / kWeightSteps;
-  if (std::abs(exponent) > kMaxExponent) throw std::domain_error("a weight that is too large or too small");
+  if (std::abs(exponent) > kMaxExponent) throw std::domain_error("a weight is too large or too small");
   const std::int64_t digits = number - exponent * kWeightSteps + kWeightSteps;
   return std::ldexp(static_cast<double>(digits) / (2.0 * kWeightSteps), static_cast<int>(exponent));
 }
@@ -136,7 +136,8 @@ QuantisedGaussian<D> quantise(const Gaussian<D>& gaussian, double noise) {
   std::size_t slot = 0;
   for (std::size_t column = 0; column < D; ++column)
     for (std::size_t row = column + 1; row < D; ++row) {
-      // L~_rc = sum_k L_rk (I + E)_kc over c <= k <= r; without the last term it is what E_rc = 0 asks for.
+      // L~_rc is the sum of L_rk (I + E)_kc for c <= k <= r. Without the term k = r, it is the value for which
+      // E_rc = 0.
       double wanted = exact[row][column];
       for (std::size_t k = column; k < row; ++k) wanted += exact[row][k] * error[k][column];
       const double step = kLowerStep * (1.0 + error[row][row]) * exact[row][row];
@@ -168,7 +169,7 @@ Gaussian<D> dequantise(const QuantisedGaussian<D>& numbers, double noise, double
     gaussian.mean(axis) = std::clamp(offset, -kMaxOffset * side, kMaxOffset * side);
   }
   if (!gaussian.cov.allFinite() || !gaussian.mean.allFinite())
-    throw std::domain_error("numbers that are too large or too small");
+    throw std::domain_error("numbers are too large or too small");
   return gaussian;
 }
 

@@ -66,8 +66,8 @@ void Database::distrust() {
   sqlite3_limit(handle(), SQLITE_LIMIT_LENGTH, static_cast<int>(std::clamp<std::uintmax_t>(bytes, 100000, kLongest)));
   for (const int danger : {SQLITE_DBCONFIG_TRUSTED_SCHEMA, SQLITE_DBCONFIG_ENABLE_TRIGGER, SQLITE_DBCONFIG_ENABLE_VIEW})
     sqlite3_db_config(handle(), danger, 0, nullptr);
-  // Pages that point to each other in a ring, or a view in the place of a table, would else be read for ever. A row
-  // takes some 20 steps and at least 20 bytes.
+  // The steps are limited, because pages that point to each other in a circle, or a view instead of a table, could be
+  // read forever. A row takes about 20 steps and at least 20 bytes.
   max_steps_ = 1000 + static_cast<std::int64_t>(bytes / 100);
   steps_left_ = std::make_unique<std::int64_t>(max_steps_);
   sqlite3_progress_handler(

@@ -16,8 +16,8 @@
 namespace gaussmap::detail {
 namespace {
 
-constexpr std::uint64_t kMaxExpansion = 64;       // of a tile by decompression; real ones grow two or three times
-constexpr std::uint64_t kMaxFinalExpansion = 16;  // numbers that are packed already
+constexpr std::uint64_t kMaxExpansion = 64;       // how much a tile may expand; real tiles expand two or three times
+constexpr std::uint64_t kMaxFinalExpansion = 16;  // the limit for final maps, whose numbers are already packed
 constexpr std::uint64_t kHasMoments = 1, kHasLabels = 2, kHasLogOdds = 4, kFinal = 8;
 
 /// Returns the numbers in front of the columns, 8 bytes each.
@@ -47,19 +47,19 @@ std::int64_t tileOrigin(const TileAddress<D>& address, std::size_t axis) {
 template <int D>
 void checkMoments(const CellMoments<D>& moments) {
   if (moments.count <= 0 || moments.count > CellMoments<D>::kMaxPoints)
-    throw std::runtime_error("a cell with an impossible count");
+    throw std::runtime_error("a cell has an impossible count of points");
   for (std::int64_t sum : moments.sum)
     if (std::abs(static_cast<double>(sum)) > 0x1.0p15 * static_cast<double>(moments.count))
-      throw std::runtime_error("a cell whose points lie outside it");
+      throw std::runtime_error("the points of a cell lie outside it");
   for (std::int64_t product : moments.product)
     if (std::abs(static_cast<double>(product)) > 0x1.0p30 * static_cast<double>(moments.count))
-      throw std::runtime_error("a cell whose points lie outside it");
+      throw std::runtime_error("the points of a cell lie outside it");
 }
 
 template <int D>
 void checkPositiveDefinite(const Matrix<D>& cov) {
   if (!cov.allFinite() || Eigen::LLT<Matrix<D>>(cov).info() != Eigen::Success)
-    throw std::runtime_error("a covariance that is not positive definite");
+    throw std::runtime_error("a covariance is not positive definite");
 }
 
 /// Calls body(row, column, slot) for the upper triangle of a matrix.
@@ -70,8 +70,8 @@ void forTriangle(const Body& body) {
     for (int column = row; column < D; ++column) body(row, column, slot++);
 }
 
-/// Data as regular as a lattice of points are packed so tightly that decompress() would take them for a bomb: a
-/// skippable frame makes up for it.
+/// Appends a skippable frame if the data shrank too much. Very regular data, like a lattice of points, shrink so much
+/// that decompress() would otherwise take them for a decompression bomb.
 void fillUp(std::string& packed, std::size_t raw_size, std::uint64_t max_expansion) {
   constexpr std::uint32_t kSkippable = 0x184D2A50;
   const std::size_t least = raw_size / max_expansion + 1;
@@ -103,7 +103,7 @@ std::string decompress(std::string_view packed) {
   std::string raw(static_cast<std::size_t>(size), '\0');
   const std::size_t got = ZSTD_decompress(raw.data(), raw.size(), packed.data(), packed.size());
   if (ZSTD_isError(got)) throw std::runtime_error(ZSTD_getErrorName(got));
-  if (got != raw.size()) throw std::runtime_error("shorter than it says");
+  if (got != raw.size()) throw std::runtime_error("shorter than its header says");
   return raw;
 }
 
@@ -164,7 +164,7 @@ Tile<D> decodeTile(std::string_view bytes, const TileAddress<D>& address, const 
   constexpr std::uint64_t kNumbers = 1 + D + D * (D + 1) / 2;
   constexpr std::uint64_t kMax = std::numeric_limits<std::uint32_t>::max();
   if ((flags & ~(kHasMoments | kHasLabels | kHasLogOdds | kFinal)) != 0)
-    throw std::runtime_error("holds what this version does not know");
+    throw std::runtime_error("has content that this version does not know");
   if ((flags & kFinal) != 0) {
     if (has_moments || cells == 0 || gaussians > kMax || raw.size() > kMaxFinalExpansion * bytes.size())
       throw std::runtime_error("its size does not fit its cells");
@@ -190,14 +190,14 @@ Tile<D> decodeTile(std::string_view bytes, const TileAddress<D>& address, const 
     columns.read(cells, 4, [&](std::size_t i, std::uint64_t bits) {
       const std::int64_t coordinate = tileOrigin<D>(address, axis) + static_cast<std::int64_t>(bits);
       if (bits >= static_cast<std::uint64_t>(address.span) || coordinate != static_cast<std::int32_t>(coordinate))
-        throw std::runtime_error("a cell that lies outside it");
+        throw std::runtime_error("a cell lies outside the tile");
       tile.keys[i][axis] = static_cast<std::int32_t>(coordinate);
     });
   std::uint64_t counted = 0;
   columns.read(cells, 4, [&](std::size_t i, std::uint64_t bits) {
     tile.counts[i] = static_cast<std::uint32_t>(bits);
     counted += bits;
-    if (bits == 0 || (has_moments && bits != 1)) throw std::runtime_error("a cell with a wrong number of Gaussians");
+    if (bits == 0 || (has_moments && bits != 1)) throw std::runtime_error("a cell has a wrong number of Gaussians");
   });
   if (counted != gaussians) throw std::runtime_error("cells and Gaussians do not match");
   if (has_moments) {
@@ -226,7 +226,7 @@ Tile<D> decodeTile(std::string_view bytes, const TileAddress<D>& address, const 
     });
     for (const Gaussian<D>& gaussian : tile.gaussians) {
       if (!gaussian.mean.allFinite() || !std::isfinite(gaussian.weight))
-        throw std::runtime_error("a Gaussian that is not finite");
+        throw std::runtime_error("a Gaussian is not finite");
       checkPositiveDefinite<D>(gaussian.cov);
     }
   }
@@ -238,7 +238,7 @@ Tile<D> decodeTile(std::string_view bytes, const TileAddress<D>& address, const 
     tile.log_odds.resize(gaussians);
     columns.read(gaussians, 4, [&](std::size_t i, std::uint64_t bits) {
       tile.log_odds[i] = floatFromBits(bits);
-      if (!std::isfinite(tile.log_odds[i])) throw std::runtime_error("an occupancy that is not finite");
+      if (!std::isfinite(tile.log_odds[i])) throw std::runtime_error("an occupancy is not finite");
     });
   }
   return tile;

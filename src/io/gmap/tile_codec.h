@@ -32,16 +32,17 @@ struct TileAddress {
   std::int32_t span = 32;  ///< cells along its side
 };
 
-/// Columns, bytes of equal weight together, zstd with checksum; a skippable frame behind it where the data shrink more
-/// than 64 times (final map: 16 times). Little endian whatever the machine. Throws std::domain_error if a tile of a
-/// final map is asked for and a Gaussian is none (io/quantise.h).
+/// Encodes a tile: columns with the bytes of equal significance together, then zstd with a checksum. If the
+/// data shrink more than 64 times (final map: 16 times), a skippable frame follows. The bytes are little
+/// endian on every machine. Throws std::domain_error if the precision is Precision::Finished and a Gaussian
+/// cannot be quantised (io/gmap/quantise.h).
 template <int D>
 std::string encodeTile(const Tile<D>& tile, const TileAddress<D>& address, const MapOptions& options, int level,
                        Precision precision = Precision::Exact);
 
-/// Throws std::runtime_error, saying what is wrong, unless the bytes are exactly what encodeTile makes of a tile at
-/// this address with these options. Allocates no more than 64 times the bytes given, twice; for one of a final map 256
-/// times.
+/// Decodes a tile. Throws std::runtime_error with the reason unless the bytes are exactly those of encodeTile() for a
+/// tile at this address with these options. It allocates at most two blocks of 64 times the size of the bytes; for a
+/// tile of a final map, 256 times.
 template <int D>
 Tile<D> decodeTile(std::string_view bytes, const TileAddress<D>& address, const MapOptions& options);
 

@@ -18,9 +18,9 @@ using namespace detail;
 namespace {
 
 constexpr double kDegree = kPi / 180.0;
-constexpr double kFarthest = 1e9;  // of a pose [m]
+constexpr double kFarthest = 1e9;  // largest coordinate of a pose [m]
 constexpr std::size_t kMaxFaults = 1000;
-constexpr double kSickNoReturn = 80.0, kSickLimit = 82.0;  // a SICK writes 81.83 and the like for no return [m]
+constexpr double kSickNoReturn = 80.0, kSickLimit = 82.0;  // [m]; a SICK writes 81.83 or similar if there is no return
 
 /// What is wrong with a line of the log.
 struct BadLine : std::runtime_error {
@@ -41,7 +41,7 @@ class Words {
   double number(const char* what) {
     double value = 0.0;
     const std::string_view text = word(what);
-    if (!parseNumber(text, value)) throw BadLine(quote(text) + " stands where the " + what + " should be");
+    if (!parseNumber(text, value)) throw BadLine("expected the " + std::string(what) + ", found " + quote(text));
     return value;
   }
   double finite(const char* what) {
@@ -55,7 +55,7 @@ class Words {
     std::size_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size())
-      throw BadLine(quote(text) + " stands where the " + what + " should be");
+      throw BadLine("expected the " + std::string(what) + ", found " + quote(text));
     if (value > left())
       throw BadLine("the " + std::string(what) + " is " + std::string(text) + ", but only " + std::to_string(left()) +
                     " words follow");
@@ -69,7 +69,7 @@ class Words {
 };
 
 void readRanges(Words& words, std::size_t n, LaserScan& scan) {
-  if (n == 0) throw BadLine("a scan without beams");
+  if (n == 0) throw BadLine("the scan has no beams");
   scan.ranges.reserve(n);
   for (std::size_t i = 0; i < n; ++i) scan.ranges.push_back(words.number("range"));
 }
@@ -77,7 +77,8 @@ void readRanges(Words& words, std::size_t n, LaserScan& scan) {
 void readPose(Words& words, LaserScan& scan) {
   scan.pose.translation.x() = words.finite("x of the pose");
   scan.pose.translation.y() = words.finite("y of the pose");
-  if (scan.pose.translation.cwiseAbs().maxCoeff() > kFarthest) throw BadLine("the pose is farther away than 10^9 m");
+  if (scan.pose.translation.cwiseAbs().maxCoeff() > kFarthest)
+    throw BadLine("the pose is more than 10^9 m from the origin");
   scan.pose.heading = std::remainder(words.finite("heading of the pose"), 2.0 * kPi);
 }
 
@@ -92,7 +93,7 @@ LaserScan readFlaser(Words& words) {
   const std::size_t n = words.count("number of ranges");
   readRanges(words, n, scan);
   if (words.left() > 9)  // at most two poses, time, host, time
-    throw BadLine("there are " + std::to_string(words.left()) + " words behind the " + std::to_string(n) +
+    throw BadLine("there are " + std::to_string(words.left()) + " words after the " + std::to_string(n) +
                   " ranges: the number of ranges is wrong, or two lines were joined");
   readPose(words, scan);
   const double field = n == 400 || n == 401 ? 100.0 : 180.0;
@@ -119,8 +120,9 @@ LaserScan readRobotLaser(Words& words) {
   if (n > 1 && step == 0.0) step = field / static_cast<double>(n - 1);
   if (n > 1 && !(step > 0.0 && step * static_cast<double>(n - 1) < 2.0 * kPi + step))
     throw BadLine(std::to_string(n) + " beams, each " + numberText(step) +
-                  " rad from the next: the angular step must be above 0 and the fan at most a full turn");
-  if (std::abs(start) > 4.0 * kPi) throw BadLine("the start angle, " + numberText(start) + " rad, is no angle");
+                  " rad from the next: the angular step must be above 0 and the field of view at most a full turn");
+  if (std::abs(start) > 4.0 * kPi)
+    throw BadLine("the start angle is " + numberText(start) + " rad, expected at most two turns");
   if (!(max_range > 0.0)) throw BadLine("the maximum range must be above 0");
   setBearings(scan, start, step);
   scan.max_range = max_range > kSickNoReturn && max_range < kSickLimit ? kSickNoReturn : max_range;
@@ -155,7 +157,7 @@ CarmenLog readCarmenLog(const std::filesystem::path& path) {
   if (log.scans.empty()) {
     const std::string reason =
         log.faults.empty() ? "" : "; line " + std::to_string(log.faults.front().line) + ": " + log.faults.front().what;
-    throw FileError(path, "no usable scan of a planar laser in it (lines FLASER or ROBOTLASER1)" + reason);
+    throw FileError(path, "has no usable scan of a planar laser (lines FLASER or ROBOTLASER1)" + reason);
   }
   return log;
 }

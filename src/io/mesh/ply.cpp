@@ -10,7 +10,7 @@
 #include "io/files/text.h"
 #include "io/mesh/ply_header.h"
 
-static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "binary values are turned round for big-endian files only");
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "only the values of big-endian files are byte-swapped");
 
 namespace gaussmap {
 using namespace detail;
@@ -180,8 +180,9 @@ class BodyParser {
     for (const PlyElement& element : header_.elements) {
       if (element.properties.empty() && element.count > 0) failAt(element, "has no property");
       if (!values_.mayHold(element))
-        failAt(element, std::to_string(element.count) +
-                            " of them do not fit into the rest of the file: it is cut off, or the number wrong");
+        failAt(element,
+               std::to_string(element.count) +
+                   " of them do not fit into the rest of the file: the file is cut off, or the number is wrong");
       for (std::size_t i = 0; i < element.count; ++i) {
         values_.beginElement(element, i);
         if (element.name == "vertex") {
@@ -208,8 +209,8 @@ class BodyParser {
     if (!vertex) throw FileError(path_, "the header has no element vertex");
     if (!face) {
       const bool has_strips = find(header_, "tristrips") != nullptr;
-      throw FileError(path_, has_strips ? "triangle strips are not read: save it with an element face"
-                                        : "the header has no element face: a point cloud is no mesh");
+      throw FileError(path_, has_strips ? "triangle strips are not supported: save the mesh with an element face"
+                                        : "the header has no element face: a point cloud is not a mesh");
     }
     for (const char* const name : {"x", "y", "z"}) {
       const auto is_axis = [&](const PlyProperty& property) { return property.name == name && !property.is_list; };
@@ -249,7 +250,7 @@ class BodyParser {
       }
     }
     if (!(vertex.cwiseAbs().array() < kFarthest).all())
-      values_.fail("vertex " + std::to_string(i) + " is not finite or farther than 1e70 m");
+      values_.fail("vertex " + std::to_string(i) + " is not finite or is farther than 1e70 m");
     mesh_.vertices.push_back(vertex);
   }
 
@@ -276,8 +277,8 @@ class BodyParser {
   std::uint32_t takeIndex(PlyType type, std::size_t face) {
     const std::int64_t index = values_.whole(type);
     if (index < 0 || static_cast<std::uint64_t>(index) >= vertices_)
-      values_.fail("face " + std::to_string(face) + " asks for vertex " + std::to_string(index) + " of " +
-                   std::to_string(vertices_));
+      values_.fail("face " + std::to_string(face) + ": vertex " + std::to_string(index) + " of " +
+                   std::to_string(vertices_) + " does not exist");
     return static_cast<std::uint32_t>(index);
   }
 

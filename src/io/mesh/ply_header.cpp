@@ -54,7 +54,7 @@ class HeaderParser {
         continue;
       }
       if (!has_format_) fail("no line 'format' before end_header");
-      if (!is_whole_line && header_.encoding != PlyEncoding::Ascii) fail("no line end behind end_header");
+      if (!is_whole_line && header_.encoding != PlyEncoding::Ascii) fail("no line end after end_header");
       header_.data_offset = static_cast<std::size_t>(rest.data() - bytes_.data());
       header_.data_line = line_ + 1;
       return std::move(header_);
@@ -72,21 +72,21 @@ class HeaderParser {
     if (words.front() == "format") return takeFormat(words);
     if (words.front() == "element") return takeElement(words);
     if (words.front() == "property") return takeProperty(words);
-    fail(quote(words.front()) + " does not belong into a PLY header (format, element, property, comment, end_header)");
+    fail(quote(words.front()) + " does not belong in a PLY header (format, element, property, comment, end_header)");
   }
 
   void takeFormat(const std::vector<std::string_view>& words) {
     constexpr std::array<std::string_view, 3> kEncodings = {"ascii", "binary_little_endian", "binary_big_endian"};
-    if (has_format_) fail("a second format");
+    if (has_format_) fail("a second line 'format'");
     const auto found = words.size() == 3 ? std::find(kEncodings.begin(), kEncodings.end(), words[1]) : kEncodings.end();
     if (found == kEncodings.end() || words[2] != "1.0")
-      fail("the format is none of 'ascii 1.0', 'binary_little_endian 1.0', 'binary_big_endian 1.0'");
+      fail("the format is not one of 'ascii 1.0', 'binary_little_endian 1.0', 'binary_big_endian 1.0'");
     header_.encoding = static_cast<PlyEncoding>(found - kEncodings.begin());
     has_format_ = true;
   }
 
   void takeElement(const std::vector<std::string_view>& words) {
-    if (words.size() != 3) fail("an element has a name and a number");
+    if (words.size() != 3) fail("expected 'element NAME COUNT'");
     PlyElement element;
     element.name = words[1];
     element.line = line_;
@@ -103,10 +103,12 @@ class HeaderParser {
     if (header_.elements.empty()) fail("a property before any element");
     PlyProperty property;
     property.is_list = words.size() > 1 && words[1] == "list";
-    if (words.size() != (property.is_list ? 5u : 3u)) fail("a property is 'TYPE name' or 'list COUNT_TYPE TYPE name'");
+    if (words.size() != (property.is_list ? 5u : 3u))
+      fail("expected 'property TYPE NAME' or 'property list COUNT_TYPE TYPE NAME'");
     if (property.is_list) {
       property.count_type = type(words[2]);
-      if (!isWhole(property.count_type)) fail("the length of a list is " + quote(words[2]) + ", no whole number");
+      if (!isWhole(property.count_type))
+        fail("the length of a list has the type " + quote(words[2]) + ", expected a type of whole numbers");
     }
     property.type = type(words[words.size() - 2]);
     property.name = words.back();
@@ -118,7 +120,7 @@ class HeaderParser {
   PlyType type(std::string_view word) const {
     for (const auto& [name, type] : kTypes)
       if (name == word) return type;
-    fail(quote(word) + " is no type of a property (uchar, int, float, double ...)");
+    fail(quote(word) + " is not a type of a property (uchar, int, float, double ...)");
   }
 
   const std::filesystem::path& path_;

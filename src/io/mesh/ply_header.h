@@ -30,7 +30,7 @@ struct PlyElement {
   std::size_t line = 0;  ///< line of the header
   std::vector<PlyProperty> properties;
 
-  /// Bytes, or words of a text, that the shortest such element has.
+  /// Minimum size of such an element, with empty lists: in bytes, or in words of an ASCII file.
   std::size_t minSize() const;
   std::size_t minWords() const { return properties.size(); }
 };

@@ -16,7 +16,7 @@ namespace {
 
 std::int32_t asIndex(double value) {
   if (!(std::abs(value) <= 2147483647.0) || value != std::floor(value))
-    throw std::invalid_argument("a cell key that is no whole number");
+    throw std::invalid_argument("a cell key is not a whole number");
   return static_cast<std::int32_t>(value);
 }
 
@@ -25,7 +25,7 @@ std::int32_t asIndex(double value) {
 Eigen::Vector3d originOf(const PcdHeader& header) {
   Eigen::Vector3d origin = header.viewpoint.translation;
   if (!origin.allFinite() || !(header.viewpoint.rotation.vec().norm() == 0.0))
-    throw std::invalid_argument("its VIEWPOINT is no plain shift");
+    throw std::invalid_argument("its VIEWPOINT is not a pure translation");
   return origin;
 }
 
@@ -49,14 +49,15 @@ void saveRecordsPcd(const std::filesystem::path& path, const GaussianRecords& al
 
 void savePcd(const std::filesystem::path& path, const GaussianMap<3>& map, const ExportOptions& options) {
   std::error_code error;
-  if (!options.overwrite && std::filesystem::exists(path, error)) throw FileError(path, "exists already and is kept");
+  if (!options.overwrite && std::filesystem::exists(path, error))
+    throw FileError(path, "exists already and is not overwritten");
   saveRecordsPcd(path, toRecords(map, options.scale));
 }
 
 GaussianRecords loadRecordsPcd(const std::filesystem::path& path) {
   const PcdReader reader(path);
   if (reader.header().find("covariance") == nullptr)
-    throw FileError(path, "is a cloud of points, not of Gaussians: its fields lack 'covariance'");
+    throw FileError(path, "holds points, not Gaussians: it has no field 'covariance'");
   std::vector<PcdColumn> wanted = {{"x"},         {"y"},     {"z"},      {"weight"}, {"occupancy"},
                                    {"cell_side"}, {"scale"}, {"cell_x"}, {"cell_y"}, {"cell_z"}};
   for (std::size_t element = 0; element < 6; ++element) wanted.push_back({"covariance", element});
@@ -79,7 +80,7 @@ GaussianRecords loadRecordsPcd(const std::filesystem::path& path) {
     }
     return all;
   } catch (const std::logic_error& error) {
-    throw FileError(path, std::string("is no map: ") + error.what());
+    throw FileError(path, std::string("is not a map: ") + error.what());
   }
 }
 
@@ -88,7 +89,7 @@ GaussianMap<3> loadPcd(const std::filesystem::path& path) {
   try {
     return fromRecords(all);
   } catch (const std::logic_error& error) {
-    throw FileError(path, std::string("is no map: ") + error.what());
+    throw FileError(path, std::string("is not a map: ") + error.what());
   }
 }
 

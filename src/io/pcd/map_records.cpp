@@ -40,12 +40,12 @@ Matrix<3> positiveDefinite(const GaussianRecord& record) {
   const auto& c = record.covariance;
   Eigen::Matrix3d cov;
   cov << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
-  if (!cov.allFinite()) throw std::invalid_argument("a covariance that is not finite");
+  if (!cov.allFinite()) throw std::invalid_argument("a covariance is not finite");
   if (Eigen::LLT<Eigen::Matrix3d>(cov).info() == Eigen::Success) return cov;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(cov);
   const double largest = solver.eigenvalues().maxCoeff();
   if (!(largest > 0.0) || solver.eigenvalues().minCoeff() < -kRounding * largest)
-    throw std::invalid_argument("a covariance that is not positive definite");
+    throw std::invalid_argument("a covariance is not positive definite");
   const Eigen::Vector3d lifted = solver.eigenvalues().cwiseMax(kRounding * largest);
   return solver.eigenvectors() * lifted.asDiagonal() * solver.eigenvectors().transpose();
 }
@@ -75,7 +75,7 @@ MapOptions optionsOf(const std::map<int, float>& sides) {
   int expected = finest;
   for (const auto& [scale, side] : sides) {
     if (scale != expected++ || std::abs(static_cast<double>(side) / grid.side(scale - finest) - 1.0) > 1e-5)
-      throw std::invalid_argument("its scales and cell sides describe no grid of one ratio");
+      throw std::invalid_argument("its scales and cell sides do not form a grid with one ratio");
   }
   return options;
 }
@@ -118,16 +118,18 @@ GaussianRecords toRecords(const GaussianMap<3>& map, std::optional<int> scale) {
 }
 
 GaussianMap<3> fromRecords(const GaussianRecords& all) {
-  if (all.records.empty()) throw std::invalid_argument("no Gaussian in it");
+  if (all.records.empty()) throw std::invalid_argument("it has no Gaussians");
   std::map<int, float> sides;
   for (const GaussianRecord& record : all.records) {
     if (!(record.weight > 0.0f) || !std::isfinite(record.weight))
-      throw std::invalid_argument("a Gaussian of weight " + numberText(record.weight));
+      throw std::invalid_argument("a Gaussian has the weight " + numberText(record.weight) +
+                                  ", expected a positive number");
     if (!(record.scale >= 0.0f && record.scale < 64.0f) || record.scale != std::floor(record.scale))
-      throw std::invalid_argument("a scale of " + numberText(record.scale) + ", expected is a whole number below 64");
+      throw std::invalid_argument("a Gaussian has the scale " + numberText(record.scale) +
+                                  ", expected a whole number from 0 to 63");
     const int scale = static_cast<int>(record.scale);
     if (sides.emplace(scale, record.cell_side).first->second != record.cell_side)
-      throw std::invalid_argument("cells of different sides at scale " + std::to_string(scale));
+      throw std::invalid_argument("the cells of scale " + std::to_string(scale) + " have different sides");
   }
   const MapOptions options = optionsOf(sides);
   const Grid<3> grid(options);
@@ -141,7 +143,7 @@ GaussianMap<3> fromRecords(const GaussianRecords& all) {
     const Eigen::Vector3d mean(record.mean[0], record.mean[1], record.mean[2]);
     gaussian.mean = mean + (all.origin - grid.centre(record.cell, scale));
     if (!gaussian.mean.allFinite() || gaussian.mean.cwiseAbs().maxCoeff() > 1.1 * half)
-      throw std::invalid_argument("a mean outside its cell " + toString<3>(record.cell));
+      throw std::invalid_argument("a mean lies outside its cell " + toString<3>(record.cell));
     gaussian.mean = gaussian.mean.cwiseMax(-half).cwiseMin(half);
     gaussian.cov = positiveDefinite(record);
     gaussian.weight = static_cast<double>(record.weight);

@@ -67,7 +67,8 @@ class AsciiParser {
     // Some programs write doubles like 1e-300 although the header declares floats.
     if (!is_narrow) result = readNumber(place_, end_, value);
     const bool overflows = single && !is_narrow && std::abs(value) > double{std::numeric_limits<float>::max()};
-    if (overflows || result.ec == std::errc::result_out_of_range) failAtWord("does not fit the field's F 4 or F 8");
+    if (overflows || result.ec == std::errc::result_out_of_range)
+      failAtWord("does not fit the type of the field (F 4 or F 8)");
     const bool ends_word = result.ptr == end_ || isBlank(*result.ptr) || *result.ptr == '\n';
     if (result.ec != std::errc() || !ends_word)
       failAtWord("is not a number (1.5, not 1,5; blanks between the columns)");

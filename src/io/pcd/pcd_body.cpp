@@ -11,7 +11,7 @@ namespace {
 
 // DATA binary_compressed starts with two 32-bit numbers: the compressed size and the expanded size in bytes.
 constexpr std::size_t kSizesBytes = 8;
-// The best that LZF can do: a back reference of 3 bytes stands for 264.
+// The maximum of LZF: a back reference of 3 bytes expands to 264 bytes.
 constexpr std::size_t kMaxExpansion = 264 / 3;
 
 struct CompressedSizes {

@@ -54,7 +54,7 @@ class HeaderParser {
   void refuseOtherFiles() const {
     if (bytes_.empty()) throw FileError(path_, "the file is empty");
     if (bytes_.substr(0, kByteOrderMark.size()) == kByteOrderMark)
-      fail(1, "a byte order mark stands before the header: save the file as UTF-8 without it");
+      fail(1, "the file starts with a byte order mark: save the file as UTF-8 without it");
   }
 
   void collectLines() {
@@ -64,7 +64,7 @@ class HeaderParser {
       std::vector<std::string_view> words = splitWords(line);
       if (words.empty() || words.front().front() == '#') continue;
       const Keyword keyword = keywordOf(words.front(), number);
-      if (has(keyword)) fail(number, "a second " + std::string(kNames[keyword]));
+      if (has(keyword)) fail(number, "a second line " + std::string(kNames[keyword]));
       words.erase(words.begin());
       lines_[keyword] = {number, std::move(words)};
       if (keyword != kData) continue;
@@ -80,7 +80,7 @@ class HeaderParser {
     if (word == "COLUMNS") return kFields;  // the name of FIELDS before version 0.5
     const auto found = std::find(kNames.begin(), kNames.end(), word);
     if (found == kNames.end())
-      fail(line, quote(word) + " does not belong into a PCD header (VERSION, FIELDS, SIZE ...): is this a PCD file?");
+      fail(line, quote(word) + " does not belong in a PCD header (VERSION, FIELDS, SIZE ...): is this a PCD file?");
     return static_cast<Keyword>(found - kNames.begin());
   }
 
@@ -115,7 +115,8 @@ class HeaderParser {
     if (line.words.size() == 1 && parseNumber(line.words.front(), version))
       for (const double known : {0.5, 0.6, 0.7})
         if (std::abs(version - known) < 1e-9) return;
-    fail(line.number, "VERSION is " + quote(line.words.empty() ? "" : line.words.front()) + ": 0.5 to 0.7 are known");
+    fail(line.number,
+         "VERSION is " + quote(line.words.empty() ? "" : line.words.front()) + ", expected 0.5, 0.6 or 0.7");
   }
 
   void readFields() {

@@ -13,7 +13,8 @@ void readPoints(const PcdReader& reader, const std::vector<PcdOutput>& fields, c
   for (const PcdOutput& wanted : fields) {
     const PcdField* const field = reader.header().find(wanted.name);
     if (!field || field->type != wanted.type || field->size != wanted.size || field->count != wanted.count)
-      throw FileError(reader.path(), "is no " + what + ": field '" + wanted.name + "' is missing or of another type");
+      throw FileError(reader.path(),
+                      "is not a " + what + ": field '" + wanted.name + "' is missing or has another type");
     offsets.push_back(field->offset);
   }
   const std::vector<char> bytes = reader.records();

@@ -207,13 +207,13 @@ std::vector<std::vector<double>> PcdReader::columns(const std::vector<PcdColumn>
   std::vector<const PcdField*> fields;
   for (const PcdColumn& column : wanted) {
     const PcdField* const field = header_.find(column.field);
-    if (!field) throw FileError(path_, "no field '" + column.field + "'");
+    if (!field) throw FileError(path_, "has no field '" + column.field + "'");
     if (column.element >= field->count)
       throw FileError(path_, "field '" + column.field + "' has COUNT " + std::to_string(field->count) +
-                                 ", no element " + std::to_string(column.element));
+                                 ", so it has no element " + std::to_string(column.element));
     if (!widen({nullptr, 0, field->type, field->size}, 0, 0, nullptr))
       throw FileError(path_, "field '" + column.field + "' is TYPE " + field->type + " SIZE " +
-                                 std::to_string(field->size) + ", which is not a number gaussmap knows");
+                                 std::to_string(field->size) + ", which gaussmap cannot read as a number");
     fields.push_back(field);
   }
 

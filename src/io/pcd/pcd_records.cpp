@@ -128,7 +128,7 @@ void moveToMap(PcdRecords& records, const Pose& pose) {
 }
 
 void append(PcdRecords& records, const PcdRecords& more) {
-  if (!sameFields(records.fields, more.fields)) throw std::invalid_argument("clouds with different fields");
+  if (!sameFields(records.fields, more.fields)) throw std::invalid_argument("the clouds have different fields");
   records.bytes.insert(records.bytes.end(), more.bytes.begin(), more.bytes.end());
   records.width = 0;
 }

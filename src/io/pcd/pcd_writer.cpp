@@ -50,12 +50,12 @@ void checkPcdFields(const std::vector<PcdOutput>& fields) {
     const auto printable = [](char c) { return c > ' ' && c < '\x7F'; };
     if (field.name.empty() || !std::all_of(field.name.begin(), field.name.end(), printable))
       throw std::invalid_argument("PCD field '" + field.name + "': the name must be one word");
-    if (!names.insert(field.name).second) throw std::invalid_argument("PCD field '" + field.name + "' is there twice");
+    if (!names.insert(field.name).second) throw std::invalid_argument("PCD field '" + field.name + "' occurs twice");
     const bool wide = field.size == 4 || field.size == 8, narrow = field.size == 1 || field.size == 2;
     const bool integer = field.type == 'I' || field.type == 'U';
     if (!(field.type == 'F' && wide) && !(integer && (wide || narrow)))
-      throw std::invalid_argument("PCD field '" + field.name + "': no type " + std::string(1, field.type) +
-                                  std::to_string(field.size));
+      throw std::invalid_argument("PCD field '" + field.name + "': " + std::string(1, field.type) +
+                                  std::to_string(field.size) + " is not a type of PCD");
     if (field.count == 0) throw std::invalid_argument("PCD field '" + field.name + "': count is 0");
   }
 }

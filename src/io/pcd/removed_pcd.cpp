@@ -125,7 +125,7 @@ std::vector<RemovedCluster<3>> readRemoved(const std::filesystem::path& path) {
   readPoints(reader, fieldsOf(record), "cloud of deleted clusters", [&](std::size_t i) {
     removed.push_back(fromRecord(record));
     if (!isUsable(removed.back()))
-      throw FileError(path, "point " + std::to_string(i) + " is no cluster: a value is impossible or not finite");
+      throw FileError(path, "point " + std::to_string(i) + " is not a cluster: a value is impossible or not finite");
   });
   return removed;
 }

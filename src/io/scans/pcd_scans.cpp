@@ -16,7 +16,8 @@ using namespace detail;
 
 namespace {
 
-// Beyond, files are opened again when they are read: each open one takes a memory map and a few kilobytes.
+// Maximum number of files that stay open: each takes a memory map and a few kilobytes. Other files are opened again
+// when they are read.
 constexpr std::size_t kMaxOpen = 1024;
 
 std::vector<std::filesystem::path> scansIn(const std::filesystem::path& directory) {
@@ -88,7 +89,7 @@ void warnOfScansGivenTwice(const std::vector<std::filesystem::path>& paths, std:
   for (const std::filesystem::path& path : paths) {
     std::error_code error;
     if (seen.insert(std::filesystem::weakly_canonical(path, error)).second || error) continue;
-    warnings.push_back(path.string() + " is given more than once, its points count as often");
+    warnings.push_back(path.string() + " is given more than once, so its points count more than once");
     return;
   }
 }

@@ -57,7 +57,7 @@ class PoseFileParser {
     while (name_words > 0 && parseNumber(words[name_words - 1], numbers[name_words - 1])) --name_words;
 
     const Layout layout = layoutOf(words, name_words);
-    if (layout_ != Layout::Unknown && layout != layout_) fail("another kind of line than those before it");
+    if (layout_ != Layout::Unknown && layout != layout_) fail("the line has another layout than the lines before it");
     layout_ = layout;
 
     const bool is_matrix = layout == Layout::Kitti || layout == Layout::NameKitti;
@@ -81,7 +81,7 @@ class PoseFileParser {
     if (name_words > 0 && numbers == kTumNumbers) return Layout::NameTum;
     if (name_words > 0 && numbers == kKittiNumbers) return Layout::NameKitti;
     std::string what = std::to_string(words.size()) + " words";
-    if (name_words > 0) what += ", the last that is not a number is " + quote(words[name_words - 1]);
+    if (name_words > 0) what += ", the last one that is not a number is " + quote(words[name_words - 1]);
     fail(what +
          ": a pose is 'time x y z qx qy qz qw' (TUM), the 12 numbers of a 3 x 4 matrix (KITTI), or a file name "
          "before 'x y z qx qy qz qw' or before the 12 numbers, with blanks between them");
@@ -102,7 +102,7 @@ class PoseFileParser {
     const double error = (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
     if (!(error <= kRotationTolerance)) {
       std::ostringstream text;
-      text << "the 3 x 3 part is no rotation: R R' differs from the identity by " << error;
+      text << "the 3 x 3 part is not a rotation: R R' differs from the identity by " << error;
       fail(text.str());
     }
     if (rotation.determinant() < 0.0) fail("the 3 x 3 part is a reflection (determinant -1), not a rotation");
@@ -180,7 +180,7 @@ std::vector<Pose> posesForScans(const PoseFile& file, const std::vector<std::fil
 
   if (file.entries.size() != scans.size())
     throw FileError(file.path, std::to_string(file.entries.size()) + " poses for " + std::to_string(scans.size()) +
-                                   " scans: give one line a scan in the order of the scans, or start each line with "
+                                   " scans: give one line per scan in the order of the scans, or start each line with "
                                    "the file name of its scan");
   std::vector<Pose> poses;
   for (const PoseFile::Entry& entry : file.entries) poses.push_back(entry.pose);

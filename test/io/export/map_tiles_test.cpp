@@ -122,14 +122,14 @@ TEST_F(MapTiles, AreRefusedWithAReason) {
     expectComplaint(complaintOf([&] { loadTiles(folder()); }), folder() / kTilesIndex, {why});
   };
   refused("", "x_resolution");
-  refused("x_resolution: 20.0\ny_resolution: nan\n", "no positive number");
+  refused("x_resolution: 20.0\ny_resolution: nan\n", "not a positive number");
   refused("x_resolution: 20.0\ny_resolution: 20.0\n", "names no tile");
-  refused("x_resolution: 20.0\ny_resolution: 20.0\n../secret.pcd: [0, 0]\n", "no file beside it");
+  refused("x_resolution: 20.0\ny_resolution: 20.0\n../secret.pcd: [0, 0]\n", "not a file in the same folder");
   directory_.write("tiles/" + std::string(kTilesIndex), "x_resolution: 1\ny_resolution: 1\nnone.pcd: [0, 0]\n");
   EXPECT_THROW(loadTiles(folder()), FileError);
   writePcd(folder() / "points.pcd", std::vector<Vector<3>>{{1, 2, 3}});
   directory_.write("tiles/" + std::string(kTilesIndex), "x_resolution: 1\ny_resolution: 1\npoints.pcd: [0, 0]\n");
-  expectComplaint(complaintOf([&] { loadTiles(folder()); }), folder() / "points.pcd", {"cloud of points"});
+  expectComplaint(complaintOf([&] { loadTiles(folder()); }), folder() / "points.pcd", {"holds points"});
   EXPECT_THROW(loadTiles(directory_.path() / "nowhere"), FileError);
   Random random(162);
   for (int round = 0; round < 300; ++round) {

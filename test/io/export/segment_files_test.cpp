@@ -164,7 +164,7 @@ TEST_F(SegmentFiles, AreNotWrittenIfANumberIsNotFinite) {
 TEST_F(SegmentFiles, RefuseCloudsThatAreNoMaps) {
   writePcd(own("cloud.pcd"), {{1, 2, 3}});
   test::expectComplaint(test::complaintOf([&] { loadSegmentsPcd(own("cloud.pcd")); }), own("cloud.pcd"),
-                        {"no map of segments", "missing"});
+                        {"not a map of segments", "missing"});
   directory_.write("text.pcd", "hello");
   EXPECT_NE(test::complaintOf([&] { loadSegmentsPcd(own("text.pcd")); }), "");
 }

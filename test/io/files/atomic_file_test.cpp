@@ -85,7 +85,7 @@ TEST_F(AtomicFileTest, TellsASecondWriterAndDoesNotDisturbTheFirst) {
     AtomicFile second(target_);
     FAIL() << "two writers";
   } catch (const FileError& error) {
-    EXPECT_NE(std::string(error.what()).find("being written by somebody else"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("being written by another process"), std::string::npos) << error.what();
   }
   first.commit();
   EXPECT_EQ(contents(target_), "first");

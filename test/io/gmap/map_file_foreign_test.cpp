@@ -45,10 +45,10 @@ TEST_F(MapFile, MustBeThereAndAFile) {
 
 TEST_F(MapFile, MustBeAMap) {
   expectRefused(directory_.write("empty", ""), "is empty");
-  expectRefused(directory_.write("text", "x y z\n1 2 3\n"), "is no map");
-  expectRefused(directory_.write("short", "SQLite"), "is no map");
+  expectRefused(directory_.write("text", "x y z\n1 2 3\n"), "is not a map");
+  expectRefused(directory_.write("short", "SQLite"), "is not a map");
   expectRefused(directory_.write("picture", std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16) + std::string(5000, '\3')),
-                "is no map");
+                "is not a map");
   expectRefused(directory_.write("magic", std::string("SQLite format 3\0", 16) + std::string(5000, '\3')),
                 "is damaged");
   expectRefused(directory_.write("magic only", std::string("SQLite format 3\0", 16)), "is damaged");

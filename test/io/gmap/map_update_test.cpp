@@ -209,12 +209,12 @@ TEST_F(MapUpdateFile, IsRefusedWithAReasonAndLeavesTheFile) {
   const GaussianMapOctree small = compress(map, 0.2);
   ASSERT_TRUE(small.isCompressed());
   save(path(), small, {}, {true, 3, 0});
-  expectComplaint(complaintOf([&] { updateMap<3>(path(), added); }), path(), {"takes no more scans"});
+  expectComplaint(complaintOf([&] { updateMap<3>(path(), added); }), path(), {"accepts no more scans"});
   MapScale<3> finest;
   finest.keys = {{0, 0, 0}};
   finest.gaussians = {{{0, 0, 0}, 1e-4 * Matrix<3>::Identity(), 5.0}};
   save(path(), build<3>(finest, {0.1, 4, 3, 0.0}), {}, {true, 3, 0});
-  expectComplaint(complaintOf([&] { updateMap<3>(path(), added); }), path(), {"takes no more scans"});
+  expectComplaint(complaintOf([&] { updateMap<3>(path(), added); }), path(), {"accepts no more scans"});
   EXPECT_EQ(namesInFolder(), (std::vector<std::string>{"map.gmap", "text"}));
 }
 

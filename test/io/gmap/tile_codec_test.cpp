@@ -162,9 +162,9 @@ TEST(TileCodec, RefusesBombs) {  // 100 MB of zeros in some kB; and a frame that
 TEST(TileCodec, RefusesCellsOutsideTheirTile) {
   Tile<3> tile = gaussianTile();
   tile.keys[0] = {0, 7, 299};
-  expectRefused(encoded(tile), "a cell that lies outside");
+  expectRefused(encoded(tile), "a cell lies outside");
   tile.keys[0] = {-101, 7, 299};
-  expectRefused(encoded(tile), "a cell that lies outside");
+  expectRefused(encoded(tile), "a cell lies outside");
 }
 
 TEST(TileCodec, RefusesGaussiansThatAreNone) {

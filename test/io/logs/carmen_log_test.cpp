@@ -93,16 +93,16 @@ TEST_F(CarmenLogTest, NamesDamagedLinesAndReadsTheOthers) {
   const std::vector<std::pair<std::string, std::string>> bad = {
       {"FLASER", "ends before the number of ranges"},
       {"FLASER 3 1 2", "is 3, but only 2 words follow"},
-      {"FLASER 99999999999999999999 1 2", "number of ranges should be"},
+      {"FLASER 99999999999999999999 1 2", "expected the number of ranges"},
       {"FLASER -3 1 2 3 0 0 0", "'-3'"},
       {"FLASER 2.5 1 2 3 0 0 0", "'2.5'"},
-      {"FLASER 0 0 0 0", "without beams"},
-      {"FLASER 2 1 2x 0 0 0", "'2x' stands where the range should be"},
+      {"FLASER 0 0 0 0", "no beams"},
+      {"FLASER 2 1 2x 0 0 0", "expected the range, found '2x'"},
       {"FLASER 2 1 2 0 0", "ends before the heading"},
       {"FLASER 2 1 2 nan 0 0", "x of the pose is not finite"},
       {"FLASER 2 1 2 0 0 inf", "heading of the pose is not finite"},
-      {"FLASER 2 1 2 0 2e9 0", "farther away"},
-      {"FLASER 2 1 2 3 4 5 6 7 8 9 10 11 12", "words behind the 2 ranges"},
+      {"FLASER 2 1 2 0 2e9 0", "more than 10^9 m"},
+      {"FLASER 2 1 2 3 4 5 6 7 8 9 10 11 12", "words after the 2 ranges"},
       {"ROBOTLASER1 0 -1 2 0.5 30 0.01 0 2 1 2 9 1 2 3 4", "number of remissions is 9"},
       {"ROBOTLASER1 0 -1 2 -0.5 30 0.01 0 2 1 2 0 1 2 3 4", "step must be above 0"},
       {"ROBOTLASER1 0 -1 2 7 30 0.01 0 3 1 2 3 0 1 2 3 4", "at most a full turn"},
@@ -194,7 +194,7 @@ TEST_F(CarmenLogTest, KeepsWhatComesBeforeTheDamageOfAGzip) {
   const CarmenLog more = read(packed + "more");
   EXPECT_EQ(more.scans.size(), 200u);
   ASSERT_EQ(more.faults.size(), 1u);
-  EXPECT_NE(more.faults[0].what.find("4 bytes behind"), std::string::npos) << more.faults[0].what;
+  EXPECT_NE(more.faults[0].what.find("4 bytes after"), std::string::npos) << more.faults[0].what;
 }
 
 TEST_F(CarmenLogTest, TakesNoMemoryForALineWithoutEnd) {

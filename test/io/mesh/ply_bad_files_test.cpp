@@ -84,10 +84,10 @@ TEST_F(BadPlyFiles, HeadersThatMakeNoSenseAreRefused) {
   expectRefused("format ascii 1.0", "format ascii 2.0", {"line 2", "ascii 1.0"});
   expectRefused("format ascii 1.0", "format text 1.0", {"line 2"});
   expectRefused("format ascii 1.0\n", "", {"no line 'format'"});
-  expectRefused("comment x", "format ascii 1.0", {"line 3", "second format"});
+  expectRefused("comment x", "format ascii 1.0", {"line 3", "second line 'format'"});
   expectRefused("comment x", "property float x", {"line 3", "before any element"});
   expectRefused("comment x", "remark x", {"line 3", "'remark'"});
-  expectRefused("element vertex 3", "element vertex", {"line 4", "name and a number"});
+  expectRefused("element vertex 3", "element vertex", {"line 4", "element NAME COUNT"});
   expectRefused("element vertex 3", "element vertex -3", {"line 4", "'-3'"});
   expectRefused("element vertex 3", "element vertex 1e3", {"line 4", "'1e3'"});
   expectRefused("element vertex 3", "element vertex 99999999999999999999", {"line 4", "64 bits"});

@@ -285,7 +285,7 @@ TEST(GaussianRecords, AreRefusedWithAnOriginThatIsNone) {
 TEST_F(MapPcd, OfOtherCloudsIsRefused) {
   const fs::path points = directory_.path() / "points.pcd";
   writePcd(points, randomCloud<3>(100, 1));
-  EXPECT_NE(messageOf([&] { loadPcd(points); }).find("points, not of Gaussians"), std::string::npos);
+  EXPECT_NE(messageOf([&] { loadPcd(points); }).find("points, not Gaussians"), std::string::npos);
   EXPECT_THROW(loadPcd(directory_.path() / "missing.pcd"), FileError);
   EXPECT_THROW(loadPcd(directory_.write("text.pcd", "hello")), FileError);
   EXPECT_THROW(loadPcd(directory_.write("empty.pcd", "")), FileError);

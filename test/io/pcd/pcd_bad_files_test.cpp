@@ -108,7 +108,7 @@ TEST_F(BadPcdFiles, LinesThatDoNotFitEachOtherAreRefused) {
   expectHeaderRefused("COUNT 1 1 1", "COUNT 1", {"line 6", "1 entries for 3"});
   expectHeaderRefused("COUNT 1 1 1", "COUNT 1 1 0", {"line 6", "COUNT of field 'z' is 0"});
   expectHeaderRefused("POINTS 1", "POINTS 2", {"line 10", "POINTS is 2"});
-  expectHeaderRefused("POINTS 1", "POINTS 1\nPOINTS 1", {"line 11", "second POINTS"});
+  expectHeaderRefused("POINTS 1", "POINTS 1\nPOINTS 1", {"line 11", "second line POINTS"});
   expectHeaderRefused("VERSION 0.7", "VERSION 0.8", {"line 2", "'0.8'"});
   expectHeaderRefused("DATA ascii", "DATA zip", {"line 11", "ascii, binary or binary_compressed"});
   expectHeaderRefused("DATA ascii", "DATA", {"line 11"});

@@ -70,7 +70,7 @@ class RemovedPcdTest : public ::testing::Test {
       readRemoved(path());
       ADD_FAILURE() << "was read";
     } catch (const FileError& error) {
-      EXPECT_NE(std::string(error.what()).find("point 1 is no cluster"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("point 1 is not a cluster"), std::string::npos) << error.what();
     }
   }
   void expectNoCloudOfClusters(const std::filesystem::path& path, const std::string& field) const {

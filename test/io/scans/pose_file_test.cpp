@@ -77,17 +77,17 @@ TEST(PoseFile, RefusesWhatIsNoRotation) {
   expectRefused("0 0 0 0 0 0 0 1.1\n", {"line 1", "norm 1.1"});
   expectRefused("0 0 0 0 nan 0 0 1\n", {"line 1", "not finite"});
   expectRefused("0 inf 0 0 0 0 0 1\n", {"line 1", "translation", "not finite"});
-  expectRefused("1 0 0 0 0 1 0 0 0 0 1.01 0\n", {"line 1", "no rotation"});
+  expectRefused("1 0 0 0 0 1 0 0 0 0 1.01 0\n", {"line 1", "not a rotation"});
   expectRefused("1 0 0 0 0 1 0 0 0 0 -1 0\n", {"line 1", "reflection"});
   expectRefused("1 0 0 nan 0 1 0 0 0 0 1 0\n", {"line 1", "not finite"});
-  expectRefused("0 0 0 0 0 0 0 0 0 0 0 0\n", {"line 1", "no rotation"});
+  expectRefused("0 0 0 0 0 0 0 0 0 0 0 0\n", {"line 1", "not a rotation"});
 }
 
 TEST(PoseFile, RefusesLinesOfOtherLengths) {
   expectRefused("1 2 3\n", {"line 1", "3 words", "TUM", "KITTI"});
   expectRefused("0,1,2,3,0,0,0,1\n", {"line 1", "'0,1,2,3,0,0,0,1'", "blanks"});
-  expectRefused("0 1 2 3 0 0 0 1\n1 0 0 0 0 1 0 0 0 0 1 0\n", {"line 2", "another kind"});
-  expectRefused("0 1 2 3 0 0 0 1\na.pcd 1 2 3 0 0 0 1\n", {"line 2", "another kind"});
+  expectRefused("0 1 2 3 0 0 0 1\n1 0 0 0 0 1 0 0 0 0 1 0\n", {"line 2", "another layout"});
+  expectRefused("0 1 2 3 0 0 0 1\na.pcd 1 2 3 0 0 0 1\n", {"line 2", "another layout"});
   expectRefused("", {"no pose"});
   expectRefused("# nothing\n", {"no pose"});
 }
