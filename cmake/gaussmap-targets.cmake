@@ -5,10 +5,10 @@
 set(gaussmap_precompiled <Eigen/Core> <Eigen/Geometry> <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map>
                          <memory> <optional> <sstream> <stdexcept> <string> <unordered_map> <utility> <variant> <vector>)
 
-# GAUSSMAP_API in the public headers marks the exported functions and classes. Shared libraries also export internal
-# functions, because gaussmap::io, the commands and the tests use those of gaussmap::core.
+# Shared libraries export only what GAUSSMAP_API marks: the public interface, and the few internals that gaussmap::io or the
+# programs use. The tests look at more internals, so a build with tests exports everything.
 set(gaussmap_visibility hidden)
-if(BUILD_SHARED_LIBS)
+if(BUILD_SHARED_LIBS AND GAUSSMAP_BUILD_TESTS)
   set(gaussmap_visibility default)
 endif()
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gaussmap/mapping/online/online_mapper.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap::detail {
 
@@ -21,7 +22,7 @@ struct RestoredMap {
 /// came back to are certainly occupied (kMaxOccupancy). `threads`: 0 = all cores.
 /// Throws std::invalid_argument if the map has no moments, or if a cluster has none, is from a map of another
 /// resolution, or would make a cell overflow.
-RestoredMap restoreClusters(const GaussianMap<3>& map, const std::vector<RemovedCluster<3>>& removed,
-                            const std::function<bool(const Vector<3>&)>& isInside, int threads = 0);
+GAUSSMAP_API RestoredMap restoreClusters(const GaussianMap<3>& map, const std::vector<RemovedCluster<3>>& removed,
+                                         const std::function<bool(const Vector<3>&)>& isInside, int threads = 0);
 
 }  // namespace gaussmap::detail

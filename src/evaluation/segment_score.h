@@ -6,6 +6,7 @@
 
 #include "gaussmap/segments/laser_scan.h"
 #include "gaussmap/segments/segment_map.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap::detail {
 
@@ -22,6 +23,6 @@ struct HoldOutScore {
 /// Scores a map with scans that it was not built from. Segments stop rays from either side. Scans whose pose is not
 /// finite are ignored. Throws std::invalid_argument if an end point of the map is not finite, or if the numbers of
 /// bearings and ranges of a scan differ.
-HoldOutScore scoreHoldOut(const SegmentMap& map, const std::vector<LaserScan>& scans);
+GAUSSMAP_API HoldOutScore scoreHoldOut(const SegmentMap& map, const std::vector<LaserScan>& scans);
 
 }  // namespace gaussmap::detail

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gaussmap/segments/segment_map.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap::detail {
 
@@ -33,6 +34,7 @@ struct WallScore {
 
 /// Compares a map with the true walls. Of `walls` it uses only start and end, with free space on the left. Throws
 /// std::invalid_argument if an option is not valid (naming it) or an end point is not finite.
-WallScore scoreWalls(const SegmentMap& map, const std::vector<Segment>& walls, const WallScoreOptions& options = {});
+GAUSSMAP_API WallScore scoreWalls(const SegmentMap& map, const std::vector<Segment>& walls,
+                                  const WallScoreOptions& options = {});
 
 }  // namespace gaussmap::detail

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gaussmap/map/gaussian_map.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap::detail {
 
@@ -15,7 +16,7 @@ Gaussian<D> localGaussian(const MapScale<D>& cells, const Grid<D>& grid, int sca
 
 /// The Gaussians that cell `cell` of a scale holds.
 template <int D>
-IndexRange gaussiansOf(const MapScale<D>& cells, std::size_t cell);
+GAUSSMAP_API IndexRange gaussiansOf(const MapScale<D>& cells, std::size_t cell);
 
 /// All Gaussians of some cells with one common parent, means about the parent's centre [m] (the shift is exact
 /// wherever the cells are): G(phi(c)) of Yguel 2009, sec. 5.1. Replaces the contents of `out`, keeps its memory.
@@ -28,6 +29,6 @@ void gatherUnder(const MapScale<D>& finer, const Grid<D>& grid, int finer_scale,
 /// gaussians, and finer.parent. The cells of `finer` stand in key order and stay as they are.
 /// Throws std::length_error at 2^32 finer cells or Gaussians and beyond.
 template <int D>
-MapScale<D> coarsen(MapScale<D>& finer, const Grid<D>& grid, int finer_scale);
+GAUSSMAP_API MapScale<D> coarsen(MapScale<D>& finer, const Grid<D>& grid, int finer_scale);
 
 }  // namespace gaussmap::detail

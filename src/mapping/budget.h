@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "gaussmap/mapping/refine.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap::detail {
 
@@ -14,15 +15,15 @@ namespace gaussmap::detail {
 void checkBudget(const Budget& budget, int first_scale, int scales);
 void checkSampling(const ErrorSampling& sampling);
 /// The same for all that refine() is given.
-void checkRefinement(const Budget& budget, const RefineOptions& options, int scales);
+GAUSSMAP_API void checkRefinement(const Budget& budget, const RefineOptions& options, int scales);
 /// Throws std::invalid_argument for budgets that work for D = 3 only.
 void refuseMeasuredBudget(const Budget& budget);
 
 /// How many Gaussians PerCell or MaxGaussians allow a scale beyond one per cell; no more than `available` with PerCell.
 /// `otherwise` = multiple of the cells at scales that MaxGaussians does not list. Throws std::invalid_argument if
 /// MaxGaussians leaves a cell without a Gaussian.
-std::size_t extraGaussians(const Budget& budget, int scale, std::size_t cells, std::size_t available,
-                           double otherwise = PerCell().gaussians);
+GAUSSMAP_API std::size_t extraGaussians(const Budget& budget, int scale, std::size_t cells, std::size_t available,
+                                        double otherwise = PerCell().gaussians);
 
 /// Result of largestMultiple(): no multiple above 1 may fit, nor 1 itself; `bytes` tells.
 struct FittingMultiple {

@@ -8,6 +8,7 @@
 
 #include "gaussmap/clustering/agglomerate.h"
 #include "gaussmap/map/gaussian_map.h"
+#include "gaussmap/version.h"
 #include "map/coarsen.h"
 
 namespace gaussmap::detail {
@@ -45,7 +46,7 @@ struct ClusterCut {
 
 /// All ways to group the Gaussians of each cell into fewer clusters: one dendrogram per cell, from which every number
 /// of clusters can be cut (agglomerate()). The rule for how many clusters each cell gets is partsPerCell().
-class ScaleClusters {
+class GAUSSMAP_API ScaleClusters {
  public:
   /// Of the finer Gaussians under each coarse cell. `areas` = occupied finest cells per finer Gaussian.
   template <int D>
@@ -91,7 +92,7 @@ std::vector<Gaussian<D>> clusterGaussians(const ScalePair<D>& pair, const Cluste
 
 /// Replaces the Gaussians of the coarse scale by the clusters of a cut of the finer ones, and links these to them.
 template <int D>
-void setClusters(const ScalePair<D>& pair, ClusterCut cut, int threads);
+GAUSSMAP_API void setClusters(const ScalePair<D>& pair, ClusterCut cut, int threads);
 
 /// Replaces the Gaussians of scale s by the moment matches of those in one cluster. A cluster belongs to the parent
 /// that most of its weight belonged to, and has the highest log-odds of its members. `finer`, if given, is linked to

@@ -7,6 +7,7 @@
 #include "gaussmap/map/gaussian_map.h"
 #include "gaussmap/map/moment_grid.h"
 #include "gaussmap/mapping/refine.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap::detail {
 
@@ -17,8 +18,8 @@ namespace gaussmap::detail {
 /// `maxGaussians(scale, cells)` = how many Gaussians a coarse scale of the part may have if it has so many cells. The
 /// rebuilt cells share what the other cells leave of them, at least one each.
 template <int D>
-GaussianMap<D> updatePart(const GaussianMap<D>& old, const MomentGrid<D>& added, bool occupancy,
-                          const RefineOptions& options,
-                          const std::function<std::size_t(int scale, std::size_t cells)>& maxGaussians);
+GAUSSMAP_API GaussianMap<D> updatePart(const GaussianMap<D>& old, const MomentGrid<D>& added, bool occupancy,
+                                       const RefineOptions& options,
+                                       const std::function<std::size_t(int scale, std::size_t cells)>& maxGaussians);
 
 }  // namespace gaussmap::detail

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gaussmap/mesh/triangle_mesh.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap::detail {
 
@@ -29,7 +30,7 @@ struct MeshFoot {
 
 /// A bounding-volume hierarchy over the triangles of a mesh, in doubles. It does not change once it is built, so any
 /// number of threads may query it. It does not keep the mesh itself.
-class MeshTree {
+class GAUSSMAP_API MeshTree {
  public:
   /// Throws std::invalid_argument if the mesh has a fault (see checkMesh()). An empty mesh is allowed and never hit.
   explicit MeshTree(const TriangleMesh& mesh);

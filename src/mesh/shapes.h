@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gaussmap/mesh/triangle_mesh.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap::detail {
 
@@ -30,18 +31,19 @@ inline constexpr int kMaxFacets = 100000;
 
 /// Returns the smallest number of facets (at most kMaxFacets) that stay within `deviation` of a circle with this
 /// radius. All lengths in [m].
-int facetsWithin(double deviation, double radius);
+GAUSSMAP_API int facetsWithin(double deviation, double radius);
 
-TriangleMesh rectangleMesh(const Rectangle& rectangle);
+GAUSSMAP_API TriangleMesh rectangleMesh(const Rectangle& rectangle);
 /// Returns all six sides of the box between two opposite corners [m].
-TriangleMesh boxMesh(const Eigen::Vector3d& low, const Eigen::Vector3d& high);
+GAUSSMAP_API TriangleMesh boxMesh(const Eigen::Vector3d& low, const Eigen::Vector3d& high);
 enum class CylinderEnds { Open, Closed };
-TriangleMesh cylinderMesh(const Cylinder& cylinder, int facets, CylinderEnds ends = CylinderEnds::Open);
+GAUSSMAP_API TriangleMesh cylinderMesh(const Cylinder& cylinder, int facets, CylinderEnds ends = CylinderEnds::Open);
 /// Returns an ellipsoid with its axes along x, y and z and these radii [m]. It has facets / 2 rows from pole to pole.
-TriangleMesh ellipsoidMesh(const Eigen::Vector3d& centre, const Eigen::Vector3d& radii, int facets);
+GAUSSMAP_API TriangleMesh ellipsoidMesh(const Eigen::Vector3d& centre, const Eigen::Vector3d& radii, int facets);
 
 /// Returns a body with the same profile for all y from y_low to y_high, for example a car. The profile lies between the
 /// height `bottom` and the line `top` of points (x, z), with ascending x and z >= bottom [m].
-TriangleMesh profileMesh(const std::vector<Eigen::Vector2d>& top, double bottom, double y_low, double y_high);
+GAUSSMAP_API TriangleMesh profileMesh(const std::vector<Eigen::Vector2d>& top, double bottom, double y_low,
+                                      double y_high);
 
 }  // namespace gaussmap::detail

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "gaussmap/core/gaussian.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap::detail {
 
@@ -12,7 +13,7 @@ namespace gaussmap::detail {
 /// origin. The order of the points does not affect the time; equal points cost only their sorting.
 /// `threads`: 0 = all cores.
 /// Throws std::invalid_argument if `to` is empty and `from` is not, or if a point is not finite (with its index).
-std::vector<double> nearestDistances(const std::vector<Vector<3>>& from, const std::vector<Vector<3>>& to,
-                                     int threads = 0);
+GAUSSMAP_API std::vector<double> nearestDistances(const std::vector<Vector<3>>& from, const std::vector<Vector<3>>& to,
+                                                  int threads = 0);
 
 }  // namespace gaussmap::detail

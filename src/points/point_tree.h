@@ -7,13 +7,14 @@
 #include <vector>
 
 #include "gaussmap/core/gaussian.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap::detail {
 
 /// Points in the order of a space-filling curve (Morton), under a binary tree of tight boxes. The tree is searched, and
 /// its order is also a good order of queries, because consecutive points are neighbours in space. All coordinates are
 /// doubles. The same points in the same order give the same tree.
-class PointTree {
+class GAUSSMAP_API PointTree {
  public:
   static constexpr std::size_t kLeafSize =
       12;  // measured on scans, surfaces and volumes of 10^6 points: 8 to 16 are equally fast
@@ -42,6 +43,6 @@ class PointTree {
 
 /// Throws std::invalid_argument, with the index, if a point is not finite or farther than 1e150 m, or if there are too
 /// many points. `name`: name of the set for the message.
-void checkPoints(const std::vector<Vector<3>>& points, const char* name);
+GAUSSMAP_API void checkPoints(const std::vector<Vector<3>>& points, const char* name);
 
 }  // namespace gaussmap::detail

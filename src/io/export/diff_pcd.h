@@ -5,6 +5,7 @@
 
 #include "gaussmap/core/error.h"
 #include "gaussmap/editing/diff_maps.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap::detail {
 
@@ -13,7 +14,7 @@ namespace gaussmap::detail {
 ///
 /// Fields: x y z (floats, relative to the VIEWPOINT) covariance[6] weight p_value label (Change as a number). Throws
 /// FileError if the file cannot be written.
-void writeDiffPcd(const std::filesystem::path& path, const GaussianMap<3>& first, const GaussianMap<3>& second,
-                  const MapDiff& diff, int scale);
+GAUSSMAP_API void writeDiffPcd(const std::filesystem::path& path, const GaussianMap<3>& first,
+                               const GaussianMap<3>& second, const MapDiff& diff, int scale);
 
 }  // namespace gaussmap::detail

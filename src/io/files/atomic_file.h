@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "gaussmap/core/error.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap::detail {
 
@@ -15,7 +16,7 @@ struct OpenFile;
 ///
 /// There is one writer at a time, because the part file is locked. The part file of a process that died is not locked,
 /// and the next writer reuses it. After handleSignals(), a signal that ends the process also removes it.
-class AtomicFile {
+class GAUSSMAP_API AtomicFile {
  public:
   /// Opens the part file and empties it. If the target is a symbolic link, the file that it points to is replaced and
   /// the link stays. Throws FileError if the target is not a regular file or is a broken link, if the folder cannot be

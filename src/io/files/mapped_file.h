@@ -4,13 +4,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <string_view>
+#include "gaussmap/version.h"
 
 namespace gaussmap::detail {
 
 struct OpenFile;
 
 /// The bytes of a regular file, mapped read-only as long as the object lives.
-class MappedFile {
+class GAUSSMAP_API MappedFile {
  public:
   /// Maps a file. Throws FileError if it does not exist, is a directory, a pipe or a device, or cannot be read.
   explicit MappedFile(const std::filesystem::path& path);

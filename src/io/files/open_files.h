@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <string_view>
+#include "gaussmap/version.h"
 
 namespace gaussmap::detail {
 
@@ -43,11 +44,11 @@ class OpenFiles {
 };
 
 /// Part files of AtomicFile.
-extern OpenFiles open_parts;
+GAUSSMAP_API extern OpenFiles open_parts;
 /// Files that are mapped into memory.
-extern OpenFiles mapped_files;
+GAUSSMAP_API extern OpenFiles mapped_files;
 
 /// Returns true if the open file still has this name. Safe in a signal handler.
-bool hasName(int file, const char* path);
+GAUSSMAP_API bool hasName(int file, const char* path);
 
 }  // namespace gaussmap::detail

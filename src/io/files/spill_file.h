@@ -7,11 +7,12 @@
 #include <filesystem>
 #include <string>
 #include <vector>
+#include "gaussmap/version.h"
 
 namespace gaussmap::detail {
 
 /// An anonymous temporary file. The system removes it when the process ends, also after a crash.
-class SpillFile {
+class GAUSSMAP_API SpillFile {
  public:
   /// Position of some bytes in the file.
   struct Span {

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <system_error>
 #include <vector>
+#include "gaussmap/version.h"
 
 // Lines, words and numbers of text files. The functions do not depend on the locale.
 namespace gaussmap::detail {
@@ -18,13 +19,13 @@ inline bool isBlank(char c) {
 inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 /// Removes the first line from `rest` and returns it without its line end.
-std::string_view takeLine(std::string_view& rest);
+GAUSSMAP_API std::string_view takeLine(std::string_view& rest);
 
 /// Returns the words of a line.
-std::vector<std::string_view> splitWords(std::string_view line);
+GAUSSMAP_API std::vector<std::string_view> splitWords(std::string_view line);
 
 /// Returns a piece of a file for a message: in quotes, at most 40 characters, unprintable bytes as \xNN.
-std::string quote(std::string_view piece);
+GAUSSMAP_API std::string quote(std::string_view piece);
 
 /// Reads a number at the start of [first, last): decimal, with an exponent, nan, inf; a leading + is allowed. The value
 /// is changed only if the error code of the result is zero. The pointer of the result is behind the number.

@@ -5,12 +5,13 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include "gaussmap/version.h"
 
 namespace gaussmap::detail {
 
 /// Reads a text file line by line, plain or gzip (detected by the first bytes, not by the name). The text is expanded
 /// piece by piece, so a small file that expands to a huge one costs time, but no memory.
-class TextLines {
+class GAUSSMAP_API TextLines {
  public:
   /// Opens a file. Throws FileError if it does not exist, is a directory, a pipe or a device, or cannot be read.
   explicit TextLines(const std::filesystem::path& path);

@@ -7,6 +7,7 @@
 
 #include "gaussmap/core/pose.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap::detail {
 
@@ -24,23 +25,23 @@ struct PcdRecords {
 
 /// Checks that the fields of a file can be written again. Throws FileError with the name of a field for which this is
 /// impossible, for example because PCL has no floats of 3 bytes.
-void checkWritable(const PcdReader& reader);
+GAUSSMAP_API void checkWritable(const PcdReader& reader);
 
 /// Reads all points of a file. Throws FileError like PcdReader::records().
-PcdRecords readRecords(const PcdReader& reader);
+GAUSSMAP_API PcdRecords readRecords(const PcdReader& reader);
 
 /// Removes the points whose flag is not set. In an organised cloud they stay, but their x, y and z become NaN, as in
 /// PCL's filters. Throws std::invalid_argument unless there is one flag per point.
-void keepOnly(PcdRecords& records, const std::vector<bool>& keep);
+GAUSSMAP_API void keepOnly(PcdRecords& records, const std::vector<bool>& keep);
 
 /// Transforms x, y, z by R p + t, and rotates normal_x, normal_y, normal_z if the cloud has them. The viewpoint becomes
 /// the identity. The types of the fields do not change.
-void moveToMap(PcdRecords& records, const Pose& pose);
+GAUSSMAP_API void moveToMap(PcdRecords& records, const Pose& pose);
 
 /// Appends points that have the same fields. Throws std::invalid_argument if the fields differ.
-void append(PcdRecords& records, const PcdRecords& more);
+GAUSSMAP_API void append(PcdRecords& records, const PcdRecords& more);
 
 /// Writes a binary PCD file atomically and without padding. Throws FileError if it cannot be written.
-void writePcd(const std::filesystem::path& path, const PcdRecords& records);
+GAUSSMAP_API void writePcd(const std::filesystem::path& path, const PcdRecords& records);
 
 }  // namespace gaussmap::detail

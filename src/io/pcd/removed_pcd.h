@@ -6,6 +6,7 @@
 
 #include "gaussmap/core/error.h"
 #include "gaussmap/mapping/online/online_mapper.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap::detail {
 
@@ -15,10 +16,10 @@ namespace gaussmap::detail {
 /// last_hit deleted_after, then count sum[3] product[6]. first_hit, last_hit and deleted_after are numbers of scans,
 /// counted from 0. The last three fields are the CellMoments; they are 0 if the cluster has no exact moments. Throws
 /// FileError if the file cannot be written.
-void writeRemoved(const std::filesystem::path& path, const std::vector<RemovedCluster<3>>& removed);
+GAUSSMAP_API void writeRemoved(const std::filesystem::path& path, const std::vector<RemovedCluster<3>>& removed);
 
 /// Reads a file of writeRemoved(). Throws FileError if a field is missing or has the wrong type, or if a value is
 /// impossible or not finite.
-std::vector<RemovedCluster<3>> readRemoved(const std::filesystem::path& path);
+GAUSSMAP_API std::vector<RemovedCluster<3>> readRemoved(const std::filesystem::path& path);
 
 }  // namespace gaussmap::detail
