@@ -21,8 +21,7 @@ struct SharedCell {
 };
 using SharedCells = std::unordered_map<std::size_t, SharedCell>;
 
-/// Returns the cells of moving objects and their adjacent cells. `moving` and `evidence` have one entry per finest
-/// cell.
+/// Returns the cells of moving objects and the adjacent cells. `moving`, `evidence`: one entry per finest cell.
 SharedCells findSharedCells(const GaussianMap<3>& map, const std::vector<bool>& moving,
                             const std::vector<Evidence>& evidence);
 

@@ -115,8 +115,7 @@ struct OnlineMapper<D>::State {
 };
 
 /// Returns the range image of a scan, or std::nullopt if no projection is found. A projection is kept while it fits the
-/// scans: at least 199 of 200 returns are in view, and the number of filled pixels per return changes by at most a
-/// fifth.
+/// scans: at least 199 of 200 returns are in view, and the filled pixels per return change by at most a fifth.
 template <int D>
 std::optional<RangeImage> OnlineMapper<D>::State::imageOf(const Scan& scan, std::size_t returns) {
   const auto fill = [](const RangeImage& image) {

@@ -97,9 +97,9 @@ template <int D>
 std::vector<GoneCell<D>> forget(OnlineCells<D>& cells, const OnlineScan<D>& scan, const OnlineOptions& options,
                                 const typename OnlineMapper<D>::Removed& removed, OnlineStatistics& statistics);
 
-/// Removes the points of deleted objects from the cells beside them. In each such cell, the points of the `recent`
-/// scans that may have seen the object are tested: scan by scan, they are removed if they lie off the surface in the
-/// cell.
+/// Removes the points of deleted objects from the cells beside them. In each such cell, the function tests the points
+/// of the `recent` scans that may have seen the object. It removes the points of a scan if they lie off the surface in
+/// the cell.
 template <int D>
 void splitSharedCells(OnlineCells<D>& cells, const OnlineScan<D>& scan, const std::vector<GoneCell<D>>& gone,
                       std::deque<ScanSums<D>>& recent, const OnlineOptions& options,
