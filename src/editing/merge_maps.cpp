@@ -253,9 +253,8 @@ class MapMerger {
     }
   }
 
-  /// Makes coarse scale s. `group` = per finer Gaussian: its old cluster at scale s. On return, it holds the old
-  /// cluster at scale s + 1 per Gaussian of scale s. `areas` = areas of the finer Gaussians; on return, of those of
-  /// scale s.
+  /// Makes coarse scale s. `group` = per finer Gaussian: its old cluster at scale s; `areas` = areas of the finer
+  /// Gaussians. On return, `group` = per Gaussian of scale s: its old cluster at scale s + 1; `areas` = their areas.
   MapScale<D> coarseScale(MapScale<D>& finer, int s, std::vector<std::uint32_t>& group,
                           std::vector<double>& areas) const {
     std::size_t extra = 0;

@@ -20,8 +20,7 @@
 namespace gaussmap::detail {
 namespace {
 
-/// Measures the error of cuts of coarse scales against samples of the finest scale. Scale follows scale, from fine to
-/// coarse.
+/// Measures the error of cuts of coarse scales against samples of the finest scale. The order is from fine to coarse.
 class CutErrorMeter {
  public:
   CutErrorMeter(const GaussianMap<3>& map, const ErrorSampling& sampling, int threads)
