@@ -19,7 +19,7 @@ using namespace detail;
 
 namespace {
 
-/// Which cells of a scale represent the data under them well enough.
+/// Decides which cells of a scale represent the finest Gaussians under them (`data_`) well enough, see compress().
 class CellCoverage {
  public:
   CellCoverage(const GaussianMap<3>& map, double max_error, const CompressOptions& options)
@@ -27,7 +27,7 @@ class CellCoverage {
     parallelFor(data_.size(), options.threads, 1024, [&](std::size_t i) { data_[i] = map.gaussian(i, 0).mean; });
   }
 
-  /// The cells asked for that are good enough: a part of `asked`.
+  /// Returns one flag per cell: true if the cell has a flag in `asked` and is good enough.
   std::vector<char> goodCells(int s, const std::vector<char>& asked) const {
     std::vector<char> good = asked;
     parallelFor(good.size(), options_.threads, 4, [&](std::size_t cell) {
@@ -38,7 +38,7 @@ class CellCoverage {
   }
 
  private:
-  /// The data under a cell: the finest Gaussians of a map that is not compressed.
+  /// Returns the finest Gaussians under a cell, as indices. The map must not be compressed.
   IndexRange dataUnder(std::size_t cell, int s) const {
     IndexRange cells{cell, cell + 1};
     for (int level = s; level > 0; --level)
@@ -58,14 +58,15 @@ class CellCoverage {
                        });
   }
 
-  /// Takes out the cells with a Gaussian whose samples stray from the data.
+  /// Clears the flags of cells with a bad Gaussian: it has no samples, or less than 95 % of them are within the maximum
+  /// error of the finest means.
   void refuseStraying(int s, std::vector<char>& good) const {
     SampleOptions sampling;
     sampling.samples = 0;
     sampling.at_least = options_.samples;
     sampling.seed = options_.seed;
     sampling.threads = options_.threads;
-    sampling.bounds = SampleBounds::Cell;  // no member cells are left afterwards
+    sampling.bounds = SampleBounds::Cell;  // compress() deletes the finer cells, so their boxes will be gone
     const MapSamples<3> samples = sampleMap<3>(map_, s, sampling);
     std::vector<std::size_t> cell_of(map_.gaussianCount(s));
     for (std::size_t cell = 0; cell < good.size(); ++cell) {
@@ -101,8 +102,8 @@ void check(const GaussianMap<3>& map, double max_error, const CompressOptions& o
   require(options.samples >= 1, "samples", static_cast<double>(options.samples), "must be at least 1");
   if (map.isCompressed())
     throw std::invalid_argument(
-        "the map is compressed already, and what was deleted is not there to measure against: compress the map that "
-        "it was made from");
+        "the map is already compressed, so the deleted Gaussians are missing as a reference: compress the map that it "
+        "was made from");
 }
 
 }  // namespace

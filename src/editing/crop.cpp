@@ -15,7 +15,7 @@ using namespace detail;
 
 namespace {
 
-/// Which Gaussians of a scale are kept, and which of these lose a part of their points.
+/// Which Gaussians of a scale are kept, and which of them lose a part of their points.
 struct KeptGaussians {
   std::vector<char> is_kept, shrinks;
 };
@@ -38,7 +38,7 @@ KeptGaussians keptGaussians(const GaussianMap<D>& map, int s, const KeptGaussian
   return own;
 }
 
-/// What is kept of a scale, without links. `places` = the new index of each Gaussian.
+/// Returns the kept Gaussians of a scale, without links. Sets `places` to the new index of each old Gaussian.
 template <int D>
 MapScale<D> cropped(const GaussianMap<D>& map, int s, const KeptGaussians& kept, std::vector<std::uint32_t>& places) {
   const MapScale<D>& old = map.scale(s);
@@ -57,7 +57,7 @@ MapScale<D> cropped(const GaussianMap<D>& map, int s, const KeptGaussians& kept,
   return scale.take();
 }
 
-/// Recomputes the clusters that shrink from what is linked to them.
+/// Recomputes the clusters that lose points, as moment matches of their remaining children.
 template <int D>
 void matchShrunk(const GaussianMap<D>& map, int s, const KeptGaussians& kept, const std::vector<std::uint32_t>& places,
                  const MapScale<D>& finer, MapScale<D>& scale) {
@@ -107,7 +107,7 @@ GaussianMap<D> crop(const GaussianMap<D>& map, const std::function<bool(const Ve
 
 Polygon::Polygon(std::vector<Vector<2>> corners) : corners_(std::move(corners)) {
   if (corners_.size() < 3)
-    throw std::invalid_argument("a polygon has at least three corners, not " + std::to_string(corners_.size()));
+    throw std::invalid_argument("a polygon needs at least three corners, found " + std::to_string(corners_.size()));
   for (std::size_t i = 0; i < corners_.size(); ++i)
     if (!corners_[i].allFinite())
       throw std::invalid_argument("corner " + std::to_string(i) + " of the polygon is not finite");
@@ -116,7 +116,7 @@ Polygon::Polygon(std::vector<Vector<2>> corners) : corners_(std::move(corners)) 
 bool Polygon::contains(double x, double y) const {
   bool inside = false;
   for (std::size_t i = 0; i < corners_.size(); ++i) {
-    // The lower end first: a side is the same seen from either polygon that it belongs to.
+    // The lower end is always first. Two polygons that share a side then compute exactly the same for it.
     const Vector<2>*low = &corners_[i], *high = &corners_[(i + 1) % corners_.size()];
     if (low->y() > high->y()) std::swap(low, high);
     if (y < low->y() || y >= high->y()) continue;

@@ -36,7 +36,8 @@ class MapComparison {
     prior_ *= prior_ / 12.0;
   }
 
-  /// p of the mean being that of Gaussian `theirs` of the other map, which lies `shift` [m] away by its cell.
+  /// Returns the p-value of the test that Gaussian `ours` and Gaussian `theirs` of the other map have the same mean.
+  /// `shift` = vector from the cell of `ours` to the cell of `theirs` [m].
   double pValue(std::size_t ours, std::size_t theirs, const Vector<D>& shift) const {
     const Gaussian<D> p = map_.localGaussian(ours, options_.scale), q = other_.localGaussian(theirs, options_.scale);
     const Matrix<D> cov = covarianceOfMean(p) + covarianceOfMean(q);
@@ -44,8 +45,9 @@ class MapComparison {
     return chiSquaredTail<D>(Eigen::LLT<Matrix<D>>(cov).matrixL().solve(difference).squaredNorm());
   }
 
-  /// Of each Gaussian the p of the most similar of the other map, as far as it was looked for: the first cell that has
-  /// one which does not differ is the last. 0 where the other has nothing near.
+  /// Returns per Gaussian the p-value of the most similar Gaussian of the other map. The own cell is searched first,
+  /// then the adjacent cells. The search ends at the first p-value of at least the significance level. The result is 0
+  /// if the other map has no Gaussian in these cells.
   std::vector<double> pValues() const {
     std::vector<double> best(map_.gaussianCount(options_.scale), 0.0);
     parallelFor(map_.cellCount(options_.scale), options_.threads, 64, [&](std::size_t cell) {
@@ -80,10 +82,10 @@ class MapComparison {
 
   const GaussianMap<D>&map_, &other_;
   const DiffOptions& options_;
-  double prior_;  // variance of points anywhere in a cell [m^2]
+  double prior_;  // variance of a uniform distribution over a cell, per axis [m^2]
 };
 
-/// The first map's part of the points of cells that both have.
+/// Returns the fraction of the points that the first map has in the cells that both maps have; 0.5 without such cells.
 template <int D>
 double shareOfFirst(const GaussianMap<D>& first, const GaussianMap<D>& second, int s) {
   double in_first = 0.0, in_second = 0.0;
@@ -102,7 +104,7 @@ double shareOfFirst(const GaussianMap<D>& first, const GaussianMap<D>& second, i
   return in_first > 0.0 ? in_first / (in_first + in_second) : 0.5;
 }
 
-/// Of the Gaussians of a cell those that differ from everything near.
+/// Returns the Gaussians of a cell that differ from all nearby Gaussians of the other map.
 std::vector<std::size_t> unexplained(const std::vector<double>& p_values, IndexRange range, double level) {
   std::vector<std::size_t> left;
   for (std::size_t i = range.first; i < range.last; ++i)
@@ -116,7 +118,7 @@ void check(const GaussianMap<D>& first, const GaussianMap<D>& second, const Diff
   require(s >= 0 && s < first.scales() && s < second.scales(), "scale", s, "must be a scale of both maps");
   require(options.level > 0.0 && options.level < 1.0, "level", options.level, "must lie between 0 and 1");
   require(options.points >= 1.0, "points", options.points, "must be at least 1");
-  require(options.threads >= 0, "threads", options.threads, "must be at least 1 (0 = all)");
+  require(options.threads >= 0, "threads", options.threads, "must be at least 1 (0 = all cores)");
   if (first.grid().side(s) == second.grid().side(s)) return;
   std::ostringstream text;
   text << "cells of " << first.grid().side(s) << " m and of " << second.grid().side(s) << " m at scale " << s

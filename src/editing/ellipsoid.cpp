@@ -7,8 +7,8 @@ namespace gaussmap::detail {
 namespace {
 
 constexpr double kSquaredRadius = 7.814727903251179;  // 95 % quantile of chi^2 with three degrees of freedom
-constexpr double kMinHalfAxis = 1e-12;                // of the largest: what rounding may have made of an eigenvalue
-constexpr int kMaxSteps = 100;                        // four or five do
+constexpr double kMinHalfAxis = 1e-12;  // of the largest half axis; rounding can make a variance 0 or negative
+constexpr int kMaxSteps = 100;          // four or five are enough
 
 }  // namespace
 
@@ -22,8 +22,9 @@ Ellipsoid95::Ellipsoid95(const Gaussian<3>& gaussian) : centre_(gaussian.mean) {
 double Ellipsoid95::distance(const Vector<3>& point) const {
   const Vector<3> y = (axes_.transpose() * (point - centre_)).cwiseAbs();
   if (!(y.cwiseQuotient(half_axes_).squaredNorm() > 1.0)) return 0.0;
-  // The nearest point is h_i^2 y_i / (h_i^2 + t), where t > 0 solves sum_i (h_i y_i / (h_i^2 + t))^2 = 1. The sum falls
-  // and is convex, so that Newton's steps from below stay below; from there every single term is at most 1.
+  // The nearest point is h_i^2 y_i / (h_i^2 + t), where t > 0 solves sum_i (h_i y_i / (h_i^2 + t))^2 = 1. The sum
+  // decreases with t and is convex, so Newton steps from below the solution stay below it. The start value is not above
+  // the solution: the largest term is 1 there, or t is 0. No term exceeds 1.
   const Vector<3> squares = half_axes_.cwiseAbs2();
   double t = (half_axes_.cwiseProduct(y) - squares).maxCoeff();
   t = t > 0.0 ? t : 0.0;

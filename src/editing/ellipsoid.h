@@ -5,18 +5,18 @@
 
 namespace gaussmap::detail {
 
-/// The ellipsoid around the mean of a Gaussian that holds 95 % of its mass: a solid.
+/// The solid ellipsoid around the mean of a Gaussian that holds 95 % of its mass.
 class Ellipsoid95 {
  public:
   /// Throws std::domain_error if the covariance is not finite.
   explicit Ellipsoid95(const Gaussian<3>& gaussian);
 
-  /// Distance [m] from a point to the nearest point of the ellipsoid, 0 inside.
+  /// Returns the distance from a point to the nearest point of the ellipsoid [m]; 0 inside.
   double distance(const Vector<3>& point) const;
 
  private:
   Vector<3> centre_;
-  Matrix<3> axes_;       // unit vectors, one a column
+  Matrix<3> axes_;       // unit vectors, in the columns
   Vector<3> half_axes_;  // [m]
 };
 

@@ -9,7 +9,8 @@
 namespace gaussmap::detail {
 namespace {
 
-/// What is kept of a scale. `places` = the new indices of the Gaussians of the next coarser scale; then of this one.
+/// Returns the kept cells of a scale, without children. `places` = new indices of the Gaussians of the next coarser
+/// scale; on return, new indices of the Gaussians of this scale.
 template <int D>
 MapScale<D> keepCellsOfScale(const GaussianMap<D>& map, int s, const std::vector<char>& keep,
                              std::vector<std::uint32_t>& places) {
@@ -29,7 +30,7 @@ MapScale<D> keepCellsOfScale(const GaussianMap<D>& map, int s, const std::vector
   return thin.take();
 }
 
-/// MapScale::first_child of the cells that are kept.
+/// Returns MapScale::first_child of the kept cells.
 template <int D>
 std::vector<std::uint32_t> keptChildren(const GaussianMap<D>& map, int s, const std::vector<char>& keep,
                                         const std::vector<char>& keep_finer) {

@@ -8,8 +8,8 @@
 
 namespace gaussmap::detail {
 
-/// The map of those cells for which keep[s][cell] is true, unchanged. All coarsest cells must be kept, and no cell
-/// under one that is not.
+/// Returns the map of the cells for which keep[s][cell] is true; these cells do not change. All coarsest cells must be
+/// kept. If a cell is not kept, no cell under it may be kept.
 template <int D>
 GAUSSMAP_API GaussianMap<D> keepCells(const GaussianMap<D>& map, const std::vector<std::vector<char>>& keep);
 

@@ -21,7 +21,7 @@ using namespace detail;
 
 namespace {
 
-/// A cell of the merged map: where it stands in each of the two.
+/// A cell of the merged map: its index in each of the two maps, std::nullopt if the map does not have it.
 struct CellPair {
   std::optional<std::size_t> a, b;
 };
@@ -40,7 +40,7 @@ void pairCells(const GaussianMap<D>& a, const GaussianMap<D>& b, int s, IndexRan
   }
 }
 
-/// The cells of every scale of the merged map, in key order: what stands under a cell are neighbours.
+/// Returns the cells of every scale of the merged map, in key order, so the children of a cell are consecutive.
 template <int D>
 std::vector<std::vector<CellPair>> pairCells(const GaussianMap<D>& a, const GaussianMap<D>& b) {
   const int coarsest = a.scales() - 1;
@@ -59,10 +59,10 @@ struct Source {
   Gaussian<D> gaussian;  // mean about the centre of its cell
   float log_odds;
   bool in_b;
-  std::uint32_t group;  // its cluster of the next scale
+  std::uint32_t group;  // parentGroup() of the Gaussian
 };
 
-/// An order that does not tell which map came first.
+/// Compares the values of two Gaussians. A sort by this order does not depend on which map is first.
 template <int D>
 bool before(const Source<D>& p, const Source<D>& q) {
   const auto numbers = [](const Source<D>& source) {
@@ -86,7 +86,7 @@ class MapMerger {
         pairs_(pairCells(a, b)) {}
 
   GaussianMap<D> run() const {
-    std::vector<std::uint32_t> group;  // the old cluster of each Gaussian of the scale that was made last
+    std::vector<std::uint32_t> group;  // per Gaussian of the latest scale: its old cluster at the next coarser scale
     std::vector<MapScale<D>> scales;
     scales.push_back(exact_ ? addMoments(group) : mergeGaussians(group));
     std::vector<double> areas = finestAreas(scales.front());
@@ -106,7 +106,8 @@ class MapMerger {
   }
   bool knowsOccupancy() const { return a_.hasOccupancy() || b_.hasOccupancy(); }
 
-  /// Of a cell or cluster, from what each map says of it.
+  /// Returns the log-odds of a cell or cluster from its log-odds in each map: their sum, within the limits, if both
+  /// maps have it and have occupancy. Otherwise the value of one map is used.
   float combined(std::optional<float> in_a, std::optional<float> in_b) const {
     if (!in_a || !in_b) return in_a ? *in_a : *in_b;
     if (!a_.hasOccupancy()) return *in_b;
@@ -114,7 +115,7 @@ class MapMerger {
     return std::clamp(*in_a + *in_b, -kMaxOccupancy, kMaxOccupancy);
   }
 
-  /// Of a finest Gaussian.
+  /// Returns the group of the parent of a finest Gaussian, see groupOf(); 0 in a map of one scale.
   std::uint32_t parentGroup(bool in_b, std::size_t index) const {
     return a_.scales() > 1 ? groupOf(in_b, (in_b ? b_ : a_).parentOf(index, 0), 1) : 0;
   }
@@ -147,7 +148,7 @@ class MapMerger {
     return finest.take();
   }
 
-  /// The Gaussians that both maps have in a finest cell, in an order that does not tell which map came first.
+  /// Returns the Gaussians that both maps have in a finest cell, sorted with before().
   std::vector<Source<D>> sourcesIn(const CellPair& pair) const {
     std::vector<Source<D>> sources;
     const auto add = [&](const GaussianMap<D>& map, std::size_t cell, bool in_b) {
@@ -161,7 +162,7 @@ class MapMerger {
     return sources;
   }
 
-  /// The closest replaced by their moment match until `parts` are left: the label of each.
+  /// Agglomerates Gaussians until `parts` clusters are left. Returns the cluster of each Gaussian.
   std::vector<int> closestTogether(const std::vector<Source<D>>& sources, std::size_t parts) const {
     if (parts == 1) return std::vector<int>(sources.size(), 0);
     std::vector<Gaussian<D>> data;
@@ -210,7 +211,7 @@ class MapMerger {
     return finest.take();
   }
 
-  /// A finest cell of both.
+  /// Merges the Gaussians of a finest cell that both maps have.
   void mergeCell(const CellPair& pair, MapScaleBuilder<D>& finest, std::vector<std::uint32_t>& group) const {
     const std::vector<Source<D>> sources = sourcesIn(pair);
     const std::size_t parts = countIn(pair, 0);
@@ -231,18 +232,18 @@ class MapMerger {
     }
   }
 
-  /// Clusters of scale s of both maps, numbered through.
+  /// Numbers the clusters of scale s: first those of map a, then those of map b. These numbers are called groups.
   std::uint32_t groupOf(bool in_b, std::size_t cluster, int s) const {
     return static_cast<std::uint32_t>(cluster + (in_b ? a_.gaussianCount(s) : 0));
   }
 
-  /// Every Gaussian under a cell of both maps becomes a group of its own. Above scale 1 there are few of them, and old
-  /// clusters, which know nothing of the other map, are too coarse to start from: samples of the coarsest scale would
-  /// be 12 % farther from the points (two halves of a drive).
+  /// Makes every finer Gaussian under a cell of both maps a group of its own. The old clusters are too coarse to start
+  /// from, because each represents one map only: samples of the coarsest scale would be 12 % farther from the points
+  /// (measured with two halves of a drive). Used above scale 1, where there are few finer Gaussians.
   void startAnew(const MapScale<D>& finer, const std::vector<char>& keep, int s,
                  std::vector<std::uint32_t>& group) const {
     auto next = static_cast<std::uint32_t>(a_.gaussianCount(s) + b_.gaussianCount(s));
-    std::size_t cell = 0;  // of scale s
+    std::size_t cell = 0;  // index at scale s
     for (std::size_t child = 0; child < finer.keys.size(); ++child) {
       const auto& key = finer.keys[child];
       while (a_.grid().ancestor(key, s - 1, s) != keyOf(pairs(s)[cell], s)) ++cell;
@@ -252,8 +253,8 @@ class MapMerger {
     }
   }
 
-  /// `group` = the old cluster of scale s that each finer Gaussian comes from; then that of scale s + 1 for those of
-  /// scale s. `areas` = those of the finer Gaussians; then of these.
+  /// Makes coarse scale s. `group` = per finer Gaussian: its old cluster at scale s; `areas` = areas of the finer
+  /// Gaussians. On return, `group` = per Gaussian of scale s: its old cluster at scale s + 1; `areas` = their areas.
   MapScale<D> coarseScale(MapScale<D>& finer, int s, std::vector<std::uint32_t>& group,
                           std::vector<double>& areas) const {
     std::size_t extra = 0;
@@ -272,7 +273,7 @@ class MapMerger {
     group.clear();
     if (s + 1 < a_.scales()) {
       for (const std::uint32_t old : made.group) {
-        if (old >= a_.gaussianCount(s) + b_.gaussianCount(s)) {  // started anew, as is all above
+        if (old >= a_.gaussianCount(s) + b_.gaussianCount(s)) {  // made by startAnew(), which replaces this 0 later
           group.push_back(0);
           continue;
         }
@@ -288,7 +289,7 @@ class MapMerger {
   const GaussianMap<D>&a_, &b_;
   const MergeMapsOptions options_;
   const bool exact_, is_refined_;
-  const std::vector<std::vector<CellPair>> pairs_;  // by scale
+  const std::vector<std::vector<CellPair>> pairs_;  // per scale
 };
 
 void requireEqual(const char* option, double a, double b) {
@@ -309,8 +310,8 @@ GaussianMap<D> mergeMaps(const GaussianMap<D>& a, const GaussianMap<D>& b, const
   requireEqual("noise floors", a.options().noise, b.options().noise);
   if (a.isCompressed() || b.isCompressed())
     throw std::invalid_argument(
-        "a compressed map has no detail to merge in some of its cells: merge the maps that it was made from, then "
-        "compress");
+        "a compressed map has no finest Gaussians in some cells, so it cannot be merged: merge the maps that it was "
+        "made from, then compress");
   if (a.empty() || b.empty()) return a.empty() ? b : a;
   return MapMerger<D>(a, b, options).run();
 }

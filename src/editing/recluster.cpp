@@ -9,7 +9,8 @@
 namespace gaussmap::detail {
 namespace {
 
-/// The finer Gaussians of a cell by the old cluster that they come from. `clusters` = of each new one, its old one.
+/// Groups the finer Gaussians of each cell by the old cluster that they come from. Sets `clusters` to the old cluster
+/// of each new cluster.
 template <int D>
 ClusterCut cutByGroup(const ScalePair<D>& pair, const std::vector<std::uint32_t>& group,
                       std::vector<std::uint32_t>& clusters) {
@@ -38,7 +39,7 @@ ReclusterResult<D> recluster(
   ReclusterResult<D> result{coarsen(from.finer, from.grid, from.scale - 1), {}, {}};
   MapScale<D>& coarse = result.scale;
   const ScalePair<D> pair{from.finer, coarse, from.grid, from.scale - 1};
-  // The old clusters serve as parents until the new ones are made.
+  // Until the clusters are final, `coarse.parent` holds the old cluster of each new cluster.
   setClusters(pair, cutByGroup(pair, from.group, coarse.parent), from.threads);
   result.areas = coarserAreas(from.finer, from.areas, coarse.gaussians.size());
   const ClusterCut cut = cutOf(coarse, result.areas);

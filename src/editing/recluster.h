@@ -11,27 +11,29 @@
 
 namespace gaussmap::detail {
 
-/// What a coarse scale is rebuilt from after its cells have changed, so that its old clusters are kept where possible.
+/// Input of recluster(), which rebuilds a coarse scale after its cells have changed and keeps old clusters if possible.
 template <int D>
 struct ReclusterInput {
-  MapScale<D>& finer;   ///< the scale below, in its new cells
-  const Grid<D>& grid;  ///< of the new cells
-  int scale;            ///< the one to be made
-  /// Of each finer Gaussian, the old cluster that it belonged to.
+  MapScale<D>& finer;   ///< the next finer scale, in its new cells
+  const Grid<D>& grid;  ///< grid of the new cells
+  int scale;            ///< the scale to make
+  /// Per finer Gaussian: the old cluster that it belonged to.
   const std::vector<std::uint32_t>& group;
-  /// Of each finer Gaussian, the number of occupied finest cells that it represents.
+  /// Per finer Gaussian: the number of occupied finest cells that it represents.
   const std::vector<double>& areas;
   int threads;
 };
 
-/// A new coarse scale. The finer Gaussians of a cell that belonged to one old cluster become one cluster, their exact
-/// moment match. Then clusters of a cell are merged as `cut` says, which gets that scale and the areas of its clusters.
+/// Result of recluster(): a new coarse scale.
 template <int D>
 struct ReclusterResult {
-  MapScale<D> scale;                 ///< without parents
-  std::vector<std::uint32_t> group;  ///< of each of its clusters: the old one that most of its weight was in
-  std::vector<double> areas;         ///< of its clusters
+  MapScale<D> scale;                 ///< the scale, without parents
+  std::vector<std::uint32_t> group;  ///< per cluster: the old cluster with the largest part of its weight
+  std::vector<double> areas;         ///< per cluster: the number of occupied finest cells that it represents
 };
+/// Rebuilds a coarse scale. First, the finer Gaussians of a cell that belonged to one old cluster become one cluster,
+/// their exact moment match. Then the function calls `cut` with the scale and the areas of its clusters, and merges the
+/// clusters of each cell according to the result.
 template <int D>
 ReclusterResult<D> recluster(
     const ReclusterInput<D>& from,

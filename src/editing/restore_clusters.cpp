@@ -15,20 +15,21 @@
 namespace gaussmap::detail {
 namespace {
 
-/// Throws unless the sums of a finest cluster belong to its cell in such a grid.
+/// Throws std::invalid_argument unless a finest cluster has moments and their mean lies in its cell of this grid.
 void checkSums(const RemovedCluster<3>& one, const Grid<3>& grid) {
   const std::string name = "the cluster of cell " + toString<3>(one.key);
   if (one.moments.count == 0)
-    throw std::invalid_argument(name + " has no exact sums: it was deleted under --learning-rate occupancy");
+    throw std::invalid_argument(name + " has no moments: it was deleted with --learning-rate occupancy");
   const double side = grid.side(0);
   const Eigen::Vector3d from_sums = grid.centre(one.key, 0) + one.moments.mean(side);
-  // Far coordinates are rounded. In a grid of another resolution the cell is somewhere else.
+  // The mean far from the origin is rounded, hence the tolerance. In a grid of another resolution, the cell with this
+  // key is somewhere else.
   if (!((from_sums - one.gaussian.mean).norm() <= 1e-3 * side) || grid.keyOf(from_sums) != one.key)
-    throw std::invalid_argument(name + " does not lie there in cells of " + numberText(side) +
+    throw std::invalid_argument(name + " does not lie in this cell of a map with cells of " + numberText(side) +
                                 " m: it was deleted from a map of another resolution");
 }
 
-/// The moments of the map and of the clusters inside. Counts the latter.
+/// Returns the moments of the map together with those of the removed clusters inside, and counts these clusters.
 MomentGrid<3> sumsOf(const GaussianMap<3>& map, const std::vector<RemovedCluster<3>>& removed,
                      const std::function<bool(const Vector<3>&)>& isInside, std::size_t& clusters) {
   MomentGrid<3> sums(map.grid().side(0));
@@ -42,14 +43,16 @@ MomentGrid<3> sumsOf(const GaussianMap<3>& map, const std::vector<RemovedCluster
     checkSums(one, map.grid());
     if (!isInside(one.gaussian.mean)) continue;
     most += one.moments.count;
-    if (most > CellMoments<3>::kMaxPoints) throw std::invalid_argument("too many points for one cell");
+    if (most > CellMoments<3>::kMaxPoints)
+      throw std::invalid_argument("too many points: a cell could hold more than 2^33 - 1; restore fewer clusters");
     sums.add(one.key, one.moments);
     ++clusters;
   }
   return sums;
 }
 
-/// Log-odds of the finest cells. Restored cells are certain: the user knows that something is there.
+/// Returns the log-odds of the finest cells. Restored cells get the maximum, because the user knows that something is
+/// there.
 std::vector<float> occupancyAfter(const GaussianMap<3>& map, const GaussianMap<3>& old) {
   std::vector<float> log_odds;
   for (std::size_t cell = 0; cell < map.cellCount(0); ++cell) {

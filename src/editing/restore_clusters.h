@@ -10,18 +10,20 @@
 
 namespace gaussmap::detail {
 
-/// A map with deleted clusters in it again.
+/// A map after deleted clusters were restored.
 struct RestoredMap {
   GaussianMap<3> map;
-  std::size_t clusters = 0;  ///< of the finest scale, brought back
-  std::int64_t points = 0;   ///< of these clusters
+  std::size_t clusters = 0;  ///< number of restored clusters of the finest scale
+  std::int64_t points = 0;   ///< number of points of these clusters
 };
 
-/// Brings clusters back that OnlineMapper has deleted and whose mean (map frame) is inside. The finest scale is exact;
-/// the coarse scales are rebuilt with as many Gaussians as they have, but at least one per cell. Cells that a cluster
-/// came back to are certainly occupied (kMaxOccupancy). `threads`: 0 = all cores.
-/// Throws std::invalid_argument if the map has no moments, or if a cluster has none, is from a map of another
-/// resolution, or would make a cell overflow.
+/// Restores the clusters that OnlineMapper has deleted and whose mean lies inside: isInside(mean) [m, map frame]. The
+/// moments of the finest scale are exact. The coarse scales are rebuilt with their old numbers of Gaussians, but at
+/// least one per cell. If the map has occupancy, cells with restored points get kMaxOccupancy.
+/// `threads`: 0 = all cores.
+///
+/// Throws std::invalid_argument if the map has no moments. Also throws it if a cluster has no moments, is from a map of
+/// another resolution, or could give a cell more points than CellMoments::kMaxPoints.
 GAUSSMAP_API RestoredMap restoreClusters(const GaussianMap<3>& map, const std::vector<RemovedCluster<3>>& removed,
                                          const std::function<bool(const Vector<3>&)>& isInside, int threads = 0);
 

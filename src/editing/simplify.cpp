@@ -22,9 +22,9 @@ using namespace detail;
 
 namespace {
 
-constexpr double kAsManyAsNow = std::numeric_limits<double>::max();  // times no cell: 0
+constexpr double kAsManyAsNow = std::numeric_limits<double>::max();  // finite: 0 cells times this is 0, not NaN
 
-/// By PerCell or MaxGaussians.
+/// Simplifies a map to a budget of PerCell or MaxGaussians.
 template <int D>
 GaussianMap<D> simplifyByCount(GaussianMap<D> map, const Budget& budget, const SimplifyOptions& options) {
   if (map.empty()) return map;
@@ -49,7 +49,7 @@ GaussianMap<D> simplifyByCount(GaussianMap<D> map, const Budget& budget, const S
   return GaussianMap<D>(grid.options(), std::move(scales));
 }
 
-/// How far samples of a scale are from some data: what 95 % of them do not exceed [m].
+/// Returns the error of a scale: 95 % of its samples are at most this far from the nearest point of `data` [m].
 double errorOf(const GaussianMap<3>& map, int s, const std::vector<Vector<3>>& data, const ErrorSampling& sampling,
                int threads) {
   const SampleOptions options{sampling.samples, 1, SampleShare::Volume, sampling.seed, threads};
@@ -72,7 +72,7 @@ RefineResult<3> simplifyToError(GaussianMap<3> map, const MaxError& budget, cons
       result.not_reached.push_back({s, least});
       continue;
     }
-    std::size_t low = before.cellCount(s) - 1, high = before.gaussianCount(s);  // too few, and enough
+    std::size_t low = before.cellCount(s) - 1, high = before.gaussianCount(s);  // too few Gaussians, and enough
     GaussianMap<3> best = before;
     while (high - low > 1 + high / 200) {  // to half a percent
       const std::size_t middle = low + (high - low) / 2;
@@ -109,7 +109,8 @@ template <int D>
 RefineResult<D> simplify(GaussianMap<D> map, const Budget& budget, const SimplifyOptions& options) {
   checkBudget(budget, 0, map.scales());
   if (options.threads < 0)
-    throw std::invalid_argument("threads = " + std::to_string(options.threads) + ": must be at least 1 (0 = all)");
+    throw std::invalid_argument("threads = " + std::to_string(options.threads) +
+                                ": must be at least 1 (0 = all cores)");
   if constexpr (D == 3) {
     if (const auto* bytes = std::get_if<MaxBytes>(&budget)) return simplifyToBytes(std::move(map), *bytes, options);
     if (const auto* error = std::get_if<MaxError>(&budget)) return simplifyToError(std::move(map), *error, options);

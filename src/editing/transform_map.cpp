@@ -37,7 +37,7 @@ void check(const PoseCovariance& covariance) {
     throw std::invalid_argument(what + "is not positive semi-definite");
 }
 
-/// A pose, in the dimensions of a map, with the covariance of TransformOptions.
+/// A pose in D dimensions, with the covariance of TransformOptions.
 template <int D>
 struct Motion {
   Matrix<D> rotation;
@@ -58,18 +58,18 @@ struct Motion {
     return rotation == Matrix<D>::Identity() && translation == Vector<D>::Zero() && !covariance;
   }
 
-  /// Of a Gaussian in the map frame.
+  /// Returns the moved Gaussian. The Gaussian is in the map frame.
   Gaussian<D> operator*(const Gaussian<D>& gaussian) const {
     const Vector<D> arm = rotation * gaussian.mean;
     Gaussian<D> result{arm + translation, rotation * gaussian.cov * rotation.transpose(), gaussian.weight};
     if (covariance) {
       Eigen::Vector3d arm3 = Eigen::Vector3d::Zero();
       arm3.head<D>() = arm;
-      // In the plane, the columns of z and of the rotations about x and y are zero.
+      // In 2-D, the columns of z and of the rotations about x and y are zero.
       const Eigen::Matrix<double, D, 6> j = poseJacobian(arm3).topRows<D>();
       result.cov += j * *covariance * j.transpose();
     }
-    result.cov = 0.5 * (result.cov + Matrix<D>(result.cov.transpose()));  // to the last bit
+    result.cov = 0.5 * (result.cov + Matrix<D>(result.cov.transpose()));  // exactly symmetric
     return result;
   }
 
@@ -83,17 +83,17 @@ struct Motion {
   }
 };
 
-/// A Gaussian of the finest scale, moved.
+/// A Gaussian of the finest scale after the motion.
 template <int D>
 struct MovedGaussian {
-  Gaussian<D> gaussian;  // map frame of the target
-  CellKey<D> key;        // its cell there
+  Gaussian<D> gaussian;  // in the new map frame
+  CellKey<D> key;        // its cell in the new grid
   float log_odds = kMaxOccupancy;
-  std::uint32_t group = 0;  // its old cluster of scale 1; not used in another grid
+  std::uint32_t group = 0;  // its old cluster of scale 1; not used if the grid changes
 };
 
-/// Halves a Gaussian along its long axis while that is longer than a cell and the halves lie in different cells.
-/// The parts have together its weight, mean and covariance: that of two halves of a uniform rod.
+/// Halves a Gaussian along its longest axis, again and again, while this axis is longer than a cell and the halves lie
+/// in different cells. Each step splits it like a uniform rod. The parts together have its weight, mean and covariance.
 template <int D>
 void split(const MovedGaussian<D>& whole, const Grid<D>& grid, std::vector<MovedGaussian<D>>& parts) {
   const PrincipalAxes<D> axes = principalAxes(whole.gaussian);
@@ -128,7 +128,7 @@ class MapTransformer {
         same_cells_(grid_.side(0) == map.grid().side(0)) {}
 
   GaussianMap<D> run() const {
-    std::vector<std::uint32_t> group;  // the old cluster of each Gaussian of the scale that was made last
+    std::vector<std::uint32_t> group;  // per Gaussian of the latest scale: its old cluster at the next coarser scale
     std::vector<MapScale<D>> scales;
     scales.push_back(finestScale(group));
     const MapOptions &ours = grid_.options(), &theirs = map_.options();
@@ -169,7 +169,7 @@ class MapTransformer {
     for (std::size_t first = 0, last = 0; first < order.size(); first = last) {
       const CellKey<D>& key = keys[order[first]];
       for (last = first + 1; last < order.size() && keys[order[last]] == key;) ++last;
-      // Long codes are sorted without regard to the order of equals.
+      // keyOrder() does not keep the order of equal keys if their codes are long.
       std::sort(order.begin() + static_cast<std::ptrdiff_t>(first), order.begin() + static_cast<std::ptrdiff_t>(last));
       const Vector<D> centre = grid_.centre(key, 0);
       finest.addCell(key);
@@ -193,9 +193,10 @@ class MapTransformer {
     return finest.take();
   }
 
-  /// `group` = the old cluster of scale 1 that each finest Gaussian comes from. Above, there are few Gaussians below a
-  /// scale, and each starts as a cluster: old ones, cut to pieces, would leave samples of the coarsest scale 5 %
-  /// farther from the points. `areas` = those of the finer Gaussians; then of those that are made.
+  /// Makes coarse scale s. For scale 1, `group` = per finest Gaussian: its old cluster of scale 1. For coarser scales,
+  /// every finer Gaussian starts as a cluster, because there are few of them. Starting from the old clusters, which the
+  /// new cells cut to pieces, would put samples of the coarsest scale 5 % farther from the points. `areas` = areas of
+  /// the finer Gaussians; on return, of the Gaussians of scale s.
   MapScale<D> coarseScale(MapScale<D>& finer, int s, std::vector<std::uint32_t>& group,
                           std::vector<double>& areas) const {
     if (s > 1) std::iota(group.begin(), group.end(), 0u);
@@ -250,8 +251,8 @@ GaussianMap<D> transformMap(const GaussianMap<D>& map, const Pose& pose, const T
   if (motion.isIdentity() && grid == map.options()) return map;
   if (map.isCompressed())
     throw std::invalid_argument(
-        "a compressed map has no detail that could be sorted into other cells: move the map that it was made from, "
-        "then compress");
+        "a compressed map has no finest Gaussians in some cells, so it cannot be transformed: transform the map that "
+        "it was made from, then compress");
   if (map.empty()) return GaussianMap<D>(grid);
   return MapTransformer<D>(map, motion, options).run();
 }

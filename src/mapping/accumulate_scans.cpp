@@ -25,7 +25,8 @@ void checkOptions(const AccumulateOptions& options) {
   require(options.max_range >= 0.0, "max_range", options.max_range, "must not be negative");
 }
 
-/// Runs body(first) on the blocks of a scan, several at a time: the number of open scans stays that of the threads.
+/// Calls body(first) for every block of a scan, in parallel. The number of open scans does not exceed the number of
+/// threads.
 template <typename Body>
 void forBlocks(const ScanReader& reader, int threads, const Body& body) {
   const std::size_t step = kBlocksPerTask * PointBlock<3>::kCapacity;
@@ -36,14 +37,14 @@ void forBlocks(const ScanReader& reader, int threads, const Body& body) {
   });
 }
 
-/// Sums and counts of one thread.
+/// The moments and counts of one thread.
 struct Partial {
   MomentGrid<3> moments;
   PointCounts counts;
 };
 using Partials = tbb::enumerable_thread_specific<Partial>;
 
-/// Counts the points of all scans; full(partial) is called after every block, by the thread whose sums they are.
+/// Adds the points of all scans to `partials`. After every block, the thread calls full(partial) with its own partial.
 template <typename Full>
 void accumulate(const Scans& scans, const AccumulateOptions& options, Partials& partials, const Full& full,
                 const ReportProgress& progress) {
@@ -59,7 +60,8 @@ void accumulate(const Scans& scans, const AccumulateOptions& options, Partials& 
       reader->read(first, block);
       partial.counts += acceptPoints(scan.pose, scans.frame(), options.max_range, block);
       try {
-        if (partial.moments.add(block) != block.size) throw std::out_of_range("a point too far for doubles");
+        if (partial.moments.add(block) != block.size)
+          throw std::out_of_range("a point is not finite in the map frame; check the units and the pose");
       } catch (const std::out_of_range& error) {
         throw std::out_of_range(scan.name + ": " + error.what());
       }

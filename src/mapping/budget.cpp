@@ -19,7 +19,7 @@ void requireOption(bool good, const std::string& name, Value value, const std::s
   throw std::invalid_argument(text.str());
 }
 
-/// Checks each kind of budget.
+/// Checks a budget of any kind.
 struct BudgetCheck {
   int first_scale, scales;
 
@@ -46,7 +46,7 @@ void checkCurves(const CurveOptions& curves) {
   checkSampling(curves.sampling);
   for (std::size_t i = 0; i < curves.multiples.size(); ++i)
     if (!(curves.multiples[i] >= 1.0) || (i > 0 && curves.multiples[i] <= curves.multiples[i - 1]))
-      throw std::invalid_argument("multiples: must be at least 1 and rise");
+      throw std::invalid_argument("multiples: must be at least 1 and increasing");
 }
 
 bool isMeasured(const Budget& budget) {
@@ -61,17 +61,17 @@ void checkBudget(const Budget& budget, int first_scale, int scales) {
 
 void checkSampling(const ErrorSampling& sampling) {
   if (sampling.samples == 0 || sampling.data == 0)
-    throw std::invalid_argument("samples = 0: errors are measured from at least one sample and one datum");
+    throw std::invalid_argument("sampling: samples and data must be at least 1");
 }
 
 void checkRefinement(const Budget& budget, const RefineOptions& options, int scales) {
   checkBudget(budget, 1, scales);
   requireOption(options.queue >= 0, "queue", options.queue, "at least 1 (0 = automatic)");
   requireOption(options.max_swaps >= 0, "max_swaps", options.max_swaps, "at least 0");
-  requireOption(options.threads >= 0, "threads", options.threads, "at least 1 (0 = all)");
+  requireOption(options.threads >= 0, "threads", options.threads, "at least 1 (0 = all cores)");
   if (options.curves) checkCurves(*options.curves);
   if (options.method != RefineMethod::Agglomerate && (options.curves || isMeasured(budget)))
-    throw std::invalid_argument("method: only agglomeration has one dendrogram for all budgets");
+    throw std::invalid_argument("method: error curves, MaxBytes and MaxError need RefineMethod::Agglomerate");
 }
 
 void refuseMeasuredBudget(const Budget& budget) {
@@ -89,14 +89,14 @@ std::size_t extraGaussians(const Budget& budget, int scale, std::size_t cells, s
       if (most->second < cells)
         throw std::invalid_argument("max_gaussians = " + std::to_string(most->second) + ": scale " +
                                     std::to_string(scale) + " has " + std::to_string(cells) +
-                                    " occupied cells, which hold at least one each; take coarser cells");
+                                    " occupied cells, and each needs at least one; take coarser cells");
       return most->second - cells;
     }
   } else {
     multiple = std::get<PerCell>(budget).gaussians;
   }
   const double most = std::floor(multiple * static_cast<double>(cells));
-  // More than the available ones are never used; the bound also keeps the conversion in range.
+  // A scale never uses more than the available Gaussians. The bound also keeps the conversion to an integer in range.
   const auto all = static_cast<std::size_t>(std::min(most, static_cast<double>(available)));
   return all - std::min(all, cells);
 }
@@ -105,7 +105,7 @@ FittingMultiple largestMultiple(double most, std::uintmax_t max_bytes,
                                 const std::function<std::uintmax_t(double)>& bytesAt) {
   const auto allowed = static_cast<double>(max_bytes);
   FittingMultiple fits{1.0, static_cast<double>(bytesAt(1.0))};
-  double too_large = 0.0, too_many_bytes = 0.0;  // 0: none known
+  double too_large = 0.0, too_many_bytes = 0.0;  // smallest multiple known not to fit, and its size; 0: none known
   for (double next = 2.0; fits.bytes <= allowed && fits.multiple < most &&
                           (too_large == 0.0 || too_large > fits.multiple * kBytePrecision);) {
     const double multiple = std::min(next, most);
@@ -114,7 +114,7 @@ FittingMultiple largestMultiple(double most, std::uintmax_t max_bytes,
       fits = {multiple, bytes};
     else
       too_large = multiple, too_many_bytes = bytes;
-    // Between two multiples the bytes rise nearly straight; the bounds of the share make the rest certain.
+    // The size is nearly linear between two multiples, so interpolate. The bounds of 0.1 and 0.9 ensure progress.
     const double share = (allowed - fits.bytes) / (too_many_bytes - fits.bytes);
     next = too_large == 0.0 ? 2.0 * fits.multiple
                             : fits.multiple + std::clamp(share, 0.1, 0.9) * (too_large - fits.multiple);

@@ -10,30 +10,31 @@
 
 namespace gaussmap::detail {
 
-/// Throws std::invalid_argument, naming it, for a value that no map can have. MaxGaussians may name the scales from
-/// `first_scale` on.
+/// Throws std::invalid_argument if a value of the budget is out of range; the message names the value. MaxGaussians may
+/// list the scales from `first_scale` to `scales` - 1.
 void checkBudget(const Budget& budget, int first_scale, int scales);
+/// Throws std::invalid_argument if a number of samples is 0.
 void checkSampling(const ErrorSampling& sampling);
-/// The same for all that refine() is given.
+/// Checks the budget and the options of refine() in the same way.
 GAUSSMAP_API void checkRefinement(const Budget& budget, const RefineOptions& options, int scales);
-/// Throws std::invalid_argument for budgets that work for D = 3 only.
+/// Throws std::invalid_argument for the budgets that exist for D = 3 only: MaxBytes and MaxError.
 void refuseMeasuredBudget(const Budget& budget);
 
-/// How many Gaussians PerCell or MaxGaussians allow a scale beyond one per cell; no more than `available` with PerCell.
-/// `otherwise` = multiple of the cells at scales that MaxGaussians does not list. Throws std::invalid_argument if
-/// MaxGaussians leaves a cell without a Gaussian.
+/// Returns the number of Gaussians beyond one per cell that PerCell or MaxGaussians allows at a scale. If the limit is
+/// a multiple of the cells, the scale gets at most `available` Gaussians. `otherwise` = the multiple at scales that
+/// MaxGaussians does not list. Throws std::invalid_argument if MaxGaussians allows less than one Gaussian per cell.
 GAUSSMAP_API std::size_t extraGaussians(const Budget& budget, int scale, std::size_t cells, std::size_t available,
                                         double otherwise = PerCell().gaussians);
 
-/// Result of largestMultiple(): no multiple above 1 may fit, nor 1 itself; `bytes` tells.
+/// Result of largestMultiple(). If no multiple fits, `multiple` is 1 and `bytes` exceeds the limit.
 struct FittingMultiple {
   double multiple = 1.0;
-  double bytes = 0.0;
+  double bytes = 0.0;  ///< size of the map with this multiple
 };
-inline constexpr double kBytePrecision = 1.02;  // of the multiple
+inline constexpr double kBytePrecision = 1.02;  // the multiple is found to within this factor
 
-/// The largest multiple of the occupied cells, between 1 and `most`, whose map fits into max_bytes, to kBytePrecision.
-/// bytesAt(1) is asked first.
+/// Returns the largest multiple of the occupied cells, between 1 and `most`, whose map fits into max_bytes. The result
+/// is precise to kBytePrecision. bytesAt(multiple) returns the size of the map; bytesAt(1) is called first.
 FittingMultiple largestMultiple(double most, std::uintmax_t max_bytes,
                                 const std::function<std::uintmax_t(double)>& bytesAt);
 

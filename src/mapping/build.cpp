@@ -25,7 +25,7 @@ template <int D>
 GaussianMap<D> build(const MomentGrid<D>& moments, const MapOptions& options) {
   const Grid<D> grid(options);
   require(moments.resolution() == options.resolution, "resolution", options.resolution,
-          "must be that of the moments, which were counted in cells of " + numberText(moments.resolution()) + " m");
+          "must be equal to the resolution of the moments, which is " + numberText(moments.resolution()) + " m");
   std::vector<CellKey<D>> keys(moments.size());
   for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = moments[i].key;
   const std::vector<std::uint32_t> order = keyOrder<D>(keys, options.ratio, options.scales - 1);
@@ -49,7 +49,7 @@ GaussianMap<D> build(const std::vector<Vector<D>>& points, const MapOptions& opt
 template <int D>
 GaussianMap<D> build(const MapScale<D>& cells, const MapOptions& options) {
   if (cells.keys.size() != cells.gaussians.size())
-    throw std::invalid_argument("a finest scale has one Gaussian in each cell");
+    throw std::invalid_argument("the finest scale must have exactly one Gaussian per cell");
   MapScale<D> finest;
   for (const std::uint32_t from : keyOrder<D>(cells.keys, options.ratio, options.scales - 1)) {
     finest.keys.push_back(cells.keys[from]);

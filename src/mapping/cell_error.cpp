@@ -12,11 +12,11 @@ namespace gaussmap::detail {
 template <int D>
 double cellError(const std::vector<Gaussian<D>>& references, const std::vector<Gaussian<D>>& data) {
   if (data.empty()) return 0.0;
-  if (references.empty()) throw std::invalid_argument("cellError: no references");
+  if (references.empty()) throw std::invalid_argument("cellError: no clusters to represent the finer Gaussians");
   double sum = 0.0;
   for (const Gaussian<D>& z : data) {
     const SmallCholesky<D> factor(z.cov);
-    if (!factor.positive) throw std::domain_error("cellError: covariance is not positive definite");
+    if (!factor.positive) throw std::domain_error("cellError: a finer covariance is not positive definite");
     double nearest = std::numeric_limits<double>::infinity();
     for (const Gaussian<D>& w : references) {
       const Vector<D> difference = w.mean - z.mean;

@@ -7,11 +7,12 @@
 
 namespace gaussmap::detail {
 
-/// How badly a coarse cell's clusters stand for the finer Gaussians z_j under it, no unit (squared standard
-/// deviations), Yguel 2009 eq. (6): 1/N sum_j min_i (mu_wi - mu_zj)' Sigma_zj^-1 (mu_wi - mu_zj). The factor
-/// (1 - eps) of the paper is 1: a map built from all its points has nothing left to learn. References and data share
-/// one frame. 0 without data. Throws std::invalid_argument if there are data but no references,
-/// std::domain_error if a covariance of the data is not positive definite.
+/// Returns how badly the clusters w_i of a coarse cell (`references`) represent the finer Gaussians z_j under it
+/// (`data`). Yguel 2009 eq. (6): 1/N sum_j min_i (mu_wi - mu_zj)' Sigma_zj^-1 (mu_wi - mu_zj), without unit (squared
+/// standard deviations). The factor (1 - eps) of the paper is 1, because a map built from all its points has nothing
+/// left to learn. All means are in one frame. The error is 0 if `data` is empty.
+/// Throws std::invalid_argument if there are finer Gaussians but no clusters, and std::domain_error if the covariance
+/// of a finer Gaussian is not positive definite.
 template <int D>
 double cellError(const std::vector<Gaussian<D>>& references, const std::vector<Gaussian<D>>& data);
 

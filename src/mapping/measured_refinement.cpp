@@ -20,7 +20,7 @@
 namespace gaussmap::detail {
 namespace {
 
-/// Measures cuts of coarse scales against samples of the finest, one scale after the other from the finest up.
+/// Measures the error of cuts of coarse scales against samples of the finest scale. The order is from fine to coarse.
 class CutErrorMeter {
  public:
   CutErrorMeter(const GaussianMap<3>& map, const ErrorSampling& sampling, int threads)
@@ -32,7 +32,7 @@ class CutErrorMeter {
   ErrorPoint measure(const ScalePair<3>& pair, const ClusterCut& cut) const {
     const std::vector<Gaussian<3>> gaussians = clusterGaussians(pair, cut, threads_);
     const std::vector<Box<3>> boxes = parentBoxes<3>(finer_boxes_, cut.cluster, gaussians.size());
-    MapScaleBuilder<3> alone;  // the scale as a map of its own, which has another key order: samples need only this
+    MapScaleBuilder<3> alone;  // a map of this scale only is enough for samples; its key order is different
     std::vector<Box<3>> alone_boxes;
     for (const std::uint32_t from : keyOrder<3>(pair.coarse.keys, 2, 0)) {
       alone.addCell(pair.coarse.keys[from]);
@@ -51,7 +51,7 @@ class CutErrorMeter {
     return {gaussians.size(), q99, percentile(distances, 95), mean};
   }
 
-  /// This cut becomes the finer scale of the next one.
+  /// Makes this cut the finer scale of the next measurements.
   void choose(const ClusterCut& cut) { finer_boxes_ = parentBoxes<3>(finer_boxes_, cut.cluster, cut.clusters()); }
 
  private:
@@ -62,7 +62,7 @@ class CutErrorMeter {
   std::vector<Box<3>> finer_boxes_;  // memberBoxes() of the finer scale
 };
 
-/// The curve of a scale at the multiples asked for, as far as there are Gaussians.
+/// Returns the error curve of a scale at the given multiples. The curve ends when every finer Gaussian is a cluster.
 ErrorCurve curveOf(const CutErrorMeter& meter, const ScalePair<3>& pair, const ScaleClusters& clusters,
                    const std::vector<double>& multiples) {
   ErrorCurve curve{pair.finer_scale + 1, {}};
@@ -77,7 +77,7 @@ ErrorCurve curveOf(const CutErrorMeter& meter, const ScalePair<3>& pair, const S
   return curve;
 }
 
-/// Curves that are longer than any true ones when they are written in decimals.
+/// Returns placeholder curves. Written as decimal text, they are at least as long as any measured curves.
 std::vector<ErrorCurve> widestCurves(int scales, const CurveOptions& options) {
   constexpr double kLong = 1.2345678901234567e-100;
   std::vector<ErrorCurve> curves;
@@ -86,7 +86,8 @@ std::vector<ErrorCurve> widestCurves(int scales, const CurveOptions& options) {
   return curves;
 }
 
-/// As few Gaussians beyond one per cell as reach the error, to half a percent; by bisection.
+/// Returns the smallest number of Gaussians beyond one per cell that reaches the error, to within half a percent, by
+/// bisection. If no number reaches it, returns the maximum and adds the scale to `not_reached`.
 std::size_t extraForError(const CutErrorMeter& meter, const ScalePair<3>& pair, const ScaleClusters& clusters,
                           double max_error, std::vector<NotReached>& not_reached) {
   const auto error = [&](std::size_t extra) { return meter.measure(pair, clusters.cut(extra)).q95; };
@@ -128,8 +129,8 @@ RefineResult<3> refineToBytes(GaussianMap<3> map, const MaxBytes& budget, const 
   for (int s = 1; s < map.scales(); ++s) fewest_cells = std::min(fewest_cells, map.cellCount(s));
   const double most = std::max(1.0, static_cast<double>(map.gaussianCount(0)) / std::max(1.0, double(fewest_cells)));
 
-  // True curves take longer than all the rest: they are made last, and only for the multiple that is chosen. Only the
-  // finest scale counts, so that the map of one trial serves for the next one.
+  // Measured curves take longer than everything else, so they are made last and only for the chosen multiple. A
+  // refinement depends on the finest scale only, so the map of one trial is the input of the next.
   RefineResult<3> trial{std::move(map), {}, {}};
   if (options.curves) trial.curves = widestCurves(trial.map.scales(), *options.curves);
   double last = 0.0;
@@ -140,7 +141,7 @@ RefineResult<3> refineToBytes(GaussianMap<3> map, const MaxBytes& budget, const 
                       }).multiple;
   if (!options.curves && last == fits && fits > 1.0) return trial;
   double multiple = fits, step = kBytePrecision;
-  while (multiple > 1.0) {  // once, unless the curves take too many bytes
+  while (multiple > 1.0) {  // runs once, unless the result exceeds the limit
     RefineResult<3> best = refine<3>(std::move(trial.map), PerCell{multiple}, options);
     if (budget.size_of(best) <= budget.bytes) return best;
     trial.map = std::move(best.map);

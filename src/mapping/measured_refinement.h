@@ -5,16 +5,16 @@
 
 namespace gaussmap::detail {
 
-// The cases of refine(), with options that are checked.
+// The cases of refine(). The caller has checked the options.
 
-/// PerCell and MaxGaussians without curves.
+/// The budgets PerCell and MaxGaussians, without error curves.
 template <int D>
 GaussianMap<D> refineByCount(GaussianMap<D> map, const Budget& budget, const RefineOptions& options);
 
-/// With error curves, by PerCell, MaxGaussians or MaxError.
+/// The budgets PerCell and MaxGaussians with error curves, and MaxError.
 RefineResult<3> refineMeasured(GaussianMap<3> map, const Budget& budget, const RefineOptions& options);
 
-/// MaxBytes.
+/// The budget MaxBytes, with or without error curves.
 RefineResult<3> refineToBytes(GaussianMap<3> map, const MaxBytes& budget, const RefineOptions& options);
 
 }  // namespace gaussmap::detail

@@ -8,7 +8,7 @@
 
 namespace gaussmap::detail {
 
-/// Refines a coarse scale by RefineMethod::Insert: at most `extra` clusters more than one per cell.
+/// Refines a coarse scale by RefineMethod::Insert. The scale gets at most `extra` clusters beyond one per cell.
 template <int D>
 void refineByInsertion(const ScalePair<D>& scale, std::size_t extra, const RefineOptions& options);
 

@@ -13,14 +13,15 @@
 
 namespace gaussmap::detail {
 
-/// Rebuilds every coarse scale from the finer one and lets refineScale(pair, areas) refine it. Nothing to do for maps
-/// of one scale or without cells.
+/// Rebuilds every coarse scale from the finer one, and calls refineScale(pair, areas) to refine it. `areas` = number of
+/// occupied finest cells per finer Gaussian. Returns maps without cells and maps of one scale unchanged.
+/// Throws std::invalid_argument if the map is compressed.
 template <int D, typename RefineScale>
 GaussianMap<D> refineScales(GaussianMap<D> map, const RefineScale& refineScale) {
   if (map.empty() || map.scales() == 1) return map;
   if (map.isCompressed())
     throw std::invalid_argument(
-        "the map is compressed: its finest scale is incomplete, so the coarse ones cannot be rebuilt; refine first, "
+        "the map is compressed: its finest scale is incomplete, so its coarse scales cannot be rebuilt; refine first, "
         "then compress");
   const Grid<D> grid = map.grid();
   std::vector<MapScale<D>> scales = std::move(map).takeScales();

@@ -14,15 +14,15 @@
 namespace gaussmap::detail {
 namespace {
 
-/// A scale of the new part, and which of its cells have new points.
+/// A scale of the updated part, and which of its cells have new points.
 template <int D>
 struct NewScale {
   MapScale<D> cells;
   std::vector<char> changed;  // per cell
-  std::vector<double> areas;  // per Gaussian, occupied finest cells that it stands for
+  std::vector<double> areas;  // per Gaussian: number of occupied finest cells that it represents
 };
 
-/// The finest scale with the new sums.
+/// Returns the finest scale with the new moments added.
 template <int D>
 NewScale<D> addMoments(const GaussianMap<D>& old, const MomentGrid<D>& added, bool occupancy) {
   MapScale<D> cells = old.scale(0);
@@ -48,7 +48,7 @@ NewScale<D> addMoments(const GaussianMap<D>& old, const MomentGrid<D>& added, bo
   return {finest.take(), std::move(ordered_changed), std::vector<double>(cells.keys.size(), 1.0)};
 }
 
-/// The cells above and which of them have new points under them.
+/// The cells of the next coarser scale, and which of them have new points under them.
 template <int D>
 struct ParentCells {
   std::vector<CellKey<D>> keys;
@@ -72,7 +72,7 @@ ParentCells<D> parentCells(const NewScale<D>& finer, const Grid<D>& grid, int fi
   return coarse;
 }
 
-/// What lies under the coarse cells that changed, as a scale of its own.
+/// Returns the finer cells under the changed coarse cells, as a scale.
 template <int D>
 NewScale<D> underChanged(const NewScale<D>& finer, const ParentCells<D>& coarse) {
   MapScaleBuilder<D> cells;
@@ -87,13 +87,13 @@ NewScale<D> underChanged(const NewScale<D>& finer, const ParentCells<D>& coarse)
   return {cells.take(), {}, std::move(areas)};
 }
 
-/// A coarse scale made of cells that stay and of cells that are rebuilt.
+/// Builds a coarse scale from unchanged cells and rebuilt cells.
 template <int D>
 class CoarseScaleOfPart {
  public:
   explicit CoarseScaleOfPart(std::vector<std::uint32_t>& parents) : parents_(parents) {}
 
-  /// Takes the Gaussians of a cell, and how the finer ones under it are linked to them.
+  /// Adds a cell with its Gaussians, and links the finer Gaussians under it to them.
   void take(const CellKey<D>& key, const MapScale<D>& from, IndexRange gaussians,
             const std::vector<std::uint32_t>& old_parents, IndexRange under) {
     cells_.addCell(key);
@@ -121,7 +121,7 @@ GaussianMap<D> updatePart(const GaussianMap<D>& old, const MomentGrid<D>& added,
   NewScale<D> finer = addMoments<D>(old, added, occupancy);
   for (int s = 1; s < old.scales(); ++s) {
     ParentCells<D> parents = parentCells<D>(finer, grid, s - 1);
-    std::size_t staying = 0;  // Gaussians in cells that stay as they are
+    std::size_t staying = 0;  // Gaussians in unchanged cells
     for (std::size_t cell = 0; cell < parents.changed.size(); ++cell)
       if (!parents.changed[cell]) staying += old.gaussiansOf(*old.find(parents.keys[cell], s), s).size();
 
@@ -134,7 +134,7 @@ GaussianMap<D> updatePart(const GaussianMap<D>& old, const MomentGrid<D>& added,
                   options.threads);
 
     CoarseScaleOfPart<D> coarse(finer.cells.parent);
-    std::size_t next = 0;  // of the rebuilt cells
+    std::size_t next = 0;  // next rebuilt cell
     for (std::size_t cell = 0; cell < parents.changed.size(); ++cell) {
       const CellKey<D>& key = parents.keys[cell];
       if (parents.changed[cell]) {

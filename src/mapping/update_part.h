@@ -11,12 +11,12 @@
 
 namespace gaussmap::detail {
 
-/// Adds points to a part of a map that is closed: it holds everything under its coarsest cells. Finest sums add
-/// exactly. Coarse cells with new points under them are rebuilt from all that is under them, by agglomeration as in
-/// refine(); all other cells stay as they are. With `occupancy`, finest cells keep their log-odds, new ones have
-/// kMaxOccupancy, and rebuilt coarse cells follow.
-/// `maxGaussians(scale, cells)` = how many Gaussians a coarse scale of the part may have if it has so many cells. The
-/// rebuilt cells share what the other cells leave of them, at least one each.
+/// Adds points to a part of a map. The part must be closed: it holds all finer cells under its coarsest cells. The
+/// moments of the finest cells are added exactly. A coarse cell with new points under it is rebuilt from all finer
+/// Gaussians under it, by agglomeration as in refine(). All other cells do not change. With `occupancy`, finest cells
+/// keep their log-odds, new finest cells get kMaxOccupancy, and rebuilt coarse cells inherit from their children.
+/// `maxGaussians(scale, cells)` returns the maximum number of Gaussians of a coarse scale of the part with that number
+/// of cells. The unchanged cells keep their Gaussians, and the rebuilt cells share the rest, at least one per cell.
 template <int D>
 GAUSSMAP_API GaussianMap<D> updatePart(const GaussianMap<D>& old, const MomentGrid<D>& added, bool occupancy,
                                        const RefineOptions& options,

@@ -5,7 +5,8 @@
 
 namespace gaussmap::detail {
 
-// Options are checked before any scan is read. Each function is defined beside the code that uses the options.
+// MovingPoints checks its options before it reads any scan. Each function is defined in the source file that uses its
+// options. They throw std::invalid_argument; the message names the option.
 void checkOptions(const ScanEvidenceOptions& options);
 void checkOptions(const MovingCellOptions& options, double resolution);
 void checkOptions(const SharedCellOptions& options, double resolution);

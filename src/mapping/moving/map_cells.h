@@ -12,7 +12,7 @@
 
 namespace gaussmap::detail {
 
-/// The cells of a complete map in the form that visitVisible() takes.
+/// Gives visitVisible() access to the cells of a complete map.
 struct MapCells {
   const GaussianMap<3>& map;
 
@@ -29,7 +29,7 @@ struct MapCells {
   }
 };
 
-/// The finest cells of a complete map in the form that object_rules.h takes.
+/// Gives the functions of object_rules.h access to the finest cells of a complete map.
 struct FinestMapCells {
   using Index = std::size_t;
   static constexpr int kDimensions = 3;

@@ -13,7 +13,7 @@
 namespace gaussmap::detail {
 namespace {
 
-/// Keeps the connected groups of cells that hold fewer points than an object has.
+/// Removes the flags of connected groups of freed cells with fewer than `min_points` points. Such a group is noise.
 void restoreSmallGroups(const FinestMapCells& cells, const MovingCellOptions& options, std::vector<bool>& freed) {
   const std::int32_t link = cellsFor(options.link, cells.side());
   std::vector<bool> seen(freed.size());
@@ -51,8 +51,8 @@ std::vector<bool> findMovingCells(const GaussianMap<3>& map, const std::vector<E
                                   const MovingCellOptions& options) {
   checkOptions(options, map.grid().side(0));
   if (evidence.size() != map.cellCount(0))
-    throw std::invalid_argument(std::to_string(evidence.size()) + " pieces of evidence for " +
-                                std::to_string(map.cellCount(0)) + " cells");
+    throw std::invalid_argument(std::to_string(evidence.size()) + " entries of evidence for a map with " +
+                                std::to_string(map.cellCount(0)) + " finest cells, expected one per cell");
   const FinestMapCells cells{map, evidence};
   std::vector<bool> moving(evidence.size());
   for (std::size_t cell = 0; cell < moving.size(); ++cell)

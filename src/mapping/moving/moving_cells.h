@@ -7,9 +7,9 @@
 
 namespace gaussmap::detail {
 
-/// Which finest cells of a map held an object that has moved (MovingPoints, steps free and grow); `evidence` as
-/// gatherEvidence() gives it. Throws std::invalid_argument if there is not one evidence per cell, or an option is not
-/// usable.
+/// Returns one flag per finest cell of a map: true if the cell held an object that has moved (MovingPoints, steps free
+/// and grow). `evidence` = result of gatherEvidence(), per finest cell. Throws std::invalid_argument if the number of
+/// entries of `evidence` differs from the number of cells, or if an option is out of range.
 std::vector<bool> findMovingCells(const GaussianMap<3>& map, const std::vector<Evidence>& evidence,
                                   const MovingCellOptions& options = {});
 

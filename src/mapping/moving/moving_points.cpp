@@ -22,7 +22,7 @@ using namespace detail;
 
 namespace {
 
-constexpr int kRatio = 6, kScales = 3;  // coarser cells serve the culling only
+constexpr int kRatio = 6, kScales = 3;  // the coarser scales are used only for culling
 
 }  // namespace
 
@@ -35,7 +35,8 @@ struct MovingPoints::State {
   std::vector<bool> moving;
   SharedCells shared;
 
-  /// The cell of a point in the map frame, if the point was counted.
+  /// Returns the cell of a point and sets `in_map` to the point in the map frame. Returns std::nullopt if the map was
+  /// built without the point.
   std::optional<std::size_t> cellOf(const Scan& scan, std::size_t i, Eigen::Vector3d& in_map) const {
     const Eigen::Vector3d& point = scan.points[i];
     if (!isReturn(point) || point.norm() > options.evidence.max_range) return std::nullopt;
@@ -43,7 +44,8 @@ struct MovingPoints::State {
     return map.find(map.grid().keyOf(in_map), 0);
   }
 
-  /// The points of shared cells that hold still, from the scans that did not see the object.
+  /// Returns the moments of the points in shared cells from the scans that did not see the object. `progress` is called
+  /// with the number of scans done.
   MomentGrid<3> stillPoints(const std::function<void(std::size_t)>& progress) const;
 };
 

@@ -14,13 +14,14 @@
 #include "map/neighbour_keys.h"
 #include "mapping/moving/surface.h"
 
-// The rules for moving objects, for a complete map (MovingPoints) and for a map that grows (OnlineMapper).
+// The rules for moving objects. MovingPoints applies them to a complete map, and OnlineMapper to a map that grows.
 //
-// `cells` gives the finest cells of a map, each named by an Index below slots(): kDimensions, side() [m], key(cell),
-// find(key) (nullopt if there is no such cell), evidence(cell), mean(cell) of its points about the cell's centre [m].
+// `cells` provides the finest cells of a map. Each cell has an Index below slots(). The members are kDimensions,
+// side() [m], key(cell), find(key) (std::nullopt if there is no such cell), evidence(cell), and mean(cell), the mean of
+// the cell's points about its centre [m].
 namespace gaussmap::detail {
 
-/// From the centre of cell `from` to that of cell `to` [m].
+/// Returns the vector from the centre of cell `from` to the centre of cell `to` [m].
 template <std::size_t N>
 Vector<static_cast<int>(N)> offsetBetween(const std::array<std::int32_t, N>& from,
                                           const std::array<std::int32_t, N>& to, double side) {
@@ -30,7 +31,7 @@ Vector<static_cast<int>(N)> offsetBetween(const std::array<std::int32_t, N>& fro
   return offset;
 }
 
-/// Calls body(near) for the cells that differ from `key` by `from` to `to` cells, see forNearKeys().
+/// Calls body(near) for the existing cells at a distance of `from` to `to` cells from `key`, see forNearKeys().
 template <typename Cells, typename Body>
 void forNearCells(const Cells& cells, const CellKey<Cells::kDimensions>& key, std::int32_t from, std::int32_t to,
                   const Body& body) {
@@ -39,9 +40,11 @@ void forNearCells(const Cells& cells, const CellKey<Cells::kDimensions>& key, st
   });
 }
 
-/// All cells of the objects that left the `freed` cells: the freed ones, then those found. A cell belongs to the object
-/// of a freed cell if a chain of cells, each within `link` of the one before [m], leads to it, the scans saw it only
-/// while they saw the freed cell, and its points are within `reach` of those of the freed cell [m].
+/// Returns all cells of the objects that left the `freed` cells: first the freed cells, then the cells found. A cell
+/// belongs to the object of a freed cell under three conditions:
+/// - A chain of such cells leads from the freed cell to it. Each is within `link` [m] of the previous one.
+/// - The scans that hit it lie between the first and the last scan that hit the freed cell.
+/// - The mean of its points is within `reach` [m] of the mean of the points of the freed cell.
 template <typename Cells>
 std::vector<typename Cells::Index> cellsOfObjects(const Cells& cells, std::vector<typename Cells::Index> freed,
                                                   double link, double reach) {
@@ -50,7 +53,7 @@ std::vector<typename Cells::Index> cellsOfObjects(const Cells& cells, std::vecto
   if (found.empty()) return found;
   const double side = cells.side();
   const std::int32_t gap = cellsFor(link, side);
-  std::vector<Index> reached_from = found;  // the freed cell of each
+  std::vector<Index> reached_from = found;  // per cell of `found`: its freed cell
   std::vector<bool> taken(cells.slots());
   for (const Index cell : found) taken[cell] = true;
   for (std::size_t next = 0; next < found.size(); ++next) {
@@ -71,8 +74,8 @@ std::vector<typename Cells::Index> cellsOfObjects(const Cells& cells, std::vecto
   return found;
 }
 
-/// Notes the cell of an object, if it still exists, and the cells beside it as shared. `shared` maps cells to values
-/// with first_scan and last_scan: the scans that may have seen an object in the cell.
+/// Adds the cell of an object, if it still exists, and the adjacent cells to the shared cells. `shared` maps cells to
+/// values with first_scan and last_scan: the first and last scan that may have seen an object in the cell.
 template <typename Cells, typename Shared>
 void noteSharedCells(const Cells& cells, const CellKey<Cells::kDimensions>& key,
                      const typename Shared::mapped_type& object, Shared& shared) {
@@ -85,8 +88,10 @@ void noteSharedCells(const Cells& cells, const CellKey<Cells::kDimensions>& key,
   forNearCells(cells, key, 1, 1, widen);
 }
 
-/// The surface in a cell, about its centre, from the points there and around: the nearest cells that make a flat piece.
-/// `still(cell)` gives the moments of the points that were measured while the object was elsewhere.
+/// Returns the surface in a cell, about the centre of the cell. It is fitted to the points in the cell and in the rings
+/// of cells around it. Rings within `options.reach` [m] are added until the points form a flat surface. Returns
+/// std::nullopt if they never do.
+/// `still(cell)` returns the moments of the points that were measured while the object was elsewhere.
 template <typename Cells, typename Still>
 std::optional<Surface<Cells::kDimensions>> surfaceAt(const Cells& cells, typename Cells::Index cell, const Still& still,
                                                      const SharedCellOptions& options) {

@@ -14,7 +14,7 @@
 namespace gaussmap::detail {
 namespace {
 
-/// What one scan says, before it is summed up in the order of the scans.
+/// The observations of one scan. They are added up later in the order of the scans.
 struct OneScan {
   std::vector<std::size_t> hits, misses;  // finest cells
   VisitCounts counts;

@@ -9,10 +9,12 @@
 
 namespace gaussmap::detail {
 
-/// Which scans hit and which passed through each finest cell of a map that was built from them (MovingPoints, step
-/// evidence). `progress` is called with the number of scans done. Throws FileError for a damaged file;
-/// std::out_of_range, naming file and point, for a point too far for the cells; std::invalid_argument, naming the
-/// option.
+/// Counts for each finest cell of a map how often the scans hit it and how often they passed through it (MovingPoints,
+/// step evidence). The map must be built from these scans. `progress` is called with the number of scans done.
+///
+/// Throws FileError if a file is damaged. Throws std::out_of_range if a point lies beyond the range of 32-bit cell
+/// indices; the message gives the scan and the point. Throws std::invalid_argument if an option is out of range; the
+/// message names the option.
 ScanEvidence gatherEvidence(const GaussianMap<3>& map, const Scans& scans, const ScanEvidenceOptions& options = {},
                             const std::function<void(std::size_t)>& progress = {});
 

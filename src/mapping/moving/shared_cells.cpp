@@ -29,7 +29,7 @@ SharedCells findSharedCells(const GaussianMap<3>& map, const std::vector<bool>& 
 
 void fitSurfaces(const GaussianMap<3>& map, const MomentGrid<3>& still, const SharedCellOptions& options, int threads,
                  SharedCells& shared) {
-  std::unordered_map<std::size_t, CellMoments<3>> between;  // what is left of the shared cells
+  std::unordered_map<std::size_t, CellMoments<3>> between;  // moments of the points in shared cells without the object
   for (std::size_t i = 0; i < still.size(); ++i)
     if (const auto cell = map.find(still[i].key, 0)) between.emplace(*cell, still[i].moments);
   const CellMoments<3> none;

@@ -14,19 +14,19 @@
 
 namespace gaussmap::detail {
 
-/// A finest cell that an object was in or beside.
+/// A finest cell in which or beside which an object was.
 struct SharedCell {
-  std::uint32_t first_scan, last_scan;  // that may have seen the object in it
+  std::uint32_t first_scan, last_scan;  // first and last scan that may have seen the object in the cell
   std::optional<Surface<3>> surface = std::nullopt;
 };
 using SharedCells = std::unordered_map<std::size_t, SharedCell>;
 
-/// The cells of moving objects and their neighbours.
+/// Returns the cells of moving objects and the adjacent cells. `moving`, `evidence`: one entry per finest cell.
 SharedCells findSharedCells(const GaussianMap<3>& map, const std::vector<bool>& moving,
                             const std::vector<Evidence>& evidence);
 
-/// Fits the surfaces (surfaceAt()) to the points in cells that neither hold nor touch an object, and to `still`: the
-/// points of shared cells that were measured while the object was elsewhere.
+/// Fits the surface of each shared cell (surfaceAt()). Cells that are not shared contribute all their points. Shared
+/// cells contribute `still`: the points that were measured while the object was elsewhere.
 void fitSurfaces(const GaussianMap<3>& map, const MomentGrid<3>& still, const SharedCellOptions& options, int threads,
                  SharedCells& shared);
 

@@ -12,22 +12,23 @@
 
 namespace gaussmap::detail {
 
-/// A flat piece of surface; in the plane, of a line.
+/// A flat piece of a surface; in 2-D, a straight piece of a line.
 template <int D>
 struct Surface {
-  Vector<D> point;   ///< on it [m], about the place that its sums are about
+  Vector<D> point;   ///< mean of the points [m], about the reference point of SurfaceSums
   Vector<D> normal;  ///< unit length
-  double deviation;  ///< standard deviation of its points across it [m]
+  double deviation;  ///< standard deviation of the points along the normal [m]
 
-  /// How far a point off it may be to belong to it [m].
+  /// Returns the maximum distance from the surface at which a point still belongs to it [m].
   double thickness(const SharedCellOptions& options) const { return std::max(options.noise, 3.0 * deviation); }
 };
 
-/// Sums over the points of some cells, about one place.
+/// Adds up the points of some cells, about one reference point, and fits a surface to them.
 template <int D>
 class SurfaceSums {
  public:
-  /// `offset`: from that place to the centre of the cell [m]; `side` of the cell [m].
+  /// Adds the points of a cell. `offset` = vector from the reference point to the centre of the cell [m], `side` = side
+  /// of the cell [m].
   void add(const CellMoments<D>& moments, double side, const Vector<D>& offset) {
     if (moments.count == 0) return;
     const auto count = static_cast<double>(moments.count);
@@ -37,10 +38,11 @@ class SurfaceSums {
     product_ += count * (moments.covariance(side) + mean * mean.transpose());
   }
 
-  /// The surface that the points lie on, if it is flat: its standard deviation across is at most `flatness` [m].
+  /// Returns the surface on which the points lie, or std::nullopt if they are too few or not flat. Flat means that
+  /// their standard deviation along the normal is at most `flatness` [m].
   std::optional<Surface<D>> surface(double flatness) const {
-    constexpr double kMinPoints = 10.0;  // points that make a surface
-    constexpr double kExtent = 0.05;     // it has a standard deviation of at least this on its second axis [m]
+    constexpr double kMinPoints = 10.0;  // minimum number of points of a surface
+    constexpr double kExtent = 0.05;     // minimum standard deviation along the second axis [m]
     if (n_ < kMinPoints) return std::nullopt;
     const Vector<D> mean = sum_ / n_;
     const Eigen::Matrix<double, D, D> spread = product_ / n_ - mean * mean.transpose();

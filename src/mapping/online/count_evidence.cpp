@@ -11,16 +11,16 @@
 namespace gaussmap::detail {
 namespace {
 
-/// A test whether the beams of a range image passed through a cluster.
+/// Input and result of a test: whether the beams of a range image passed through a cluster.
 struct BeamTest {
   std::uint32_t cell;
   std::uint32_t cluster;
   int scale;
-  Eigen::Vector3d mean;  // [m, map frame]: copied while the cell is in the cache
-  float passed = 0.0f;   // result: the share of its samples that beams passed through
+  Eigen::Vector3d mean;  // [m, map frame], copied here while the cell is in the CPU cache
+  float passed = 0.0f;   // result: fraction of the samples that beams passed through
 };
 
-/// The cells in the form that visitVisible() takes. Notes the coarse ones whose children are visited.
+/// Gives visitVisible() access to the cells. Adds the coarse cells whose children are visited to `seen`.
 template <int D>
 struct VisibleCells {
   const OnlineCells<D>& cells;
@@ -61,10 +61,10 @@ struct VisibleCells {
   }
 };
 
-/// B of [1]: how many pixels the ball around a cell may cover, at most kMax.
+/// Returns B, Yguel 2009 eq. (1): the number of pixels that the ball around a cell can cover, at most kMax.
 int samplesFor(const Projection& projection, double range, double side) {
   constexpr double kMax = 100.0;
-  double pixel = 0.0;  // its area on the unit sphere, or on the plane at z = 1
+  double pixel = 0.0;  // area of a pixel on the unit sphere (lidar) or on the plane z = 1 (camera)
   if (const auto* lidar = std::get_if<SphericalProjection>(&projection)) {
     const double rows = double(lidar->row_borders.size()) - 1.0;
     pixel = (lidar->row_borders.back() - lidar->row_borders.front()) / rows * 2.0 * kPi / lidar->columns;
@@ -87,7 +87,8 @@ bool passes(const Eigen::Vector3d& point, const SensorView& view, const OnlineOp
   return visibilityOf(view.image, view.toSensor(point), options.visibility) == Visibility::PassedThrough;
 }
 
-/// The share of a cluster's samples in its cell that the beams of a view passed through.
+/// Draws samples of a cluster. Returns the fraction of the samples inside its cell that the beams of a view passed
+/// through. If no sample is inside, tests the mean instead.
 template <int D>
 double shareOfSamples(const OnlineCells<D>& cells, const BeamTest& test, const SensorView& view,
                       const OnlineOptions& options) {
@@ -138,7 +139,8 @@ void countHits(OnlineCells<D>& cells, const OnlineScan<D>& scan, const std::vect
     std::uint32_t cell = finest, cluster = 0;
     for (int scale = 0; scale < cells.scales(); ++scale) {
       OnlineCluster<D>& at = cells.cell(cell, scale).clusters[cluster];
-      if (scale > 0 && at.evidence.hits > 0 && at.evidence.last_hit == scan.number) break;  // those above too
+      // The scan has counted a hit for this cluster, and so for its ancestors.
+      if (scale > 0 && at.evidence.hits > 0 && at.evidence.last_hit == scan.number) break;
       hit(at, scan.number, options.occupancy);
       cluster = at.parent;
       cell = cells.cell(cell, scale).parent;

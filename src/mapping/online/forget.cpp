@@ -9,7 +9,7 @@
 namespace gaussmap::detail {
 namespace {
 
-/// The finest cells below 0, and the other cells of the same objects.
+/// Returns the missed finest cells with log-odds below 0, and the other cells of the same objects.
 template <int D>
 std::vector<std::uint32_t> cellsToForget(const OnlineCells<D>& cells, const OnlineScan<D>& scan,
                                          const OnlineOptions& options) {
@@ -21,7 +21,8 @@ std::vector<std::uint32_t> cellsToForget(const OnlineCells<D>& cells, const Onli
   return cellsOfObjects(FinestOnlineCells<D>{cells}, std::move(freed), options.link, options.reach);
 }
 
-/// Adjusts clusters that learn on their own to the finer ones that are left.
+/// Fits the clusters of a coarse cell to the finer clusters that remain, by k-means from the current clusters. Used for
+/// LearningRate::Occupancy, where coarse clusters learn from the points and not from the finer clusters.
 template <int D>
 void readjust(OnlineCells<D>& cells, std::uint32_t i, int scale) {
   std::vector<Gaussian<D>> references;
@@ -58,7 +59,8 @@ std::vector<GoneCell<D>> forget(OnlineCells<D>& cells, const OnlineScan<D>& scan
     all.push_back({cells.cell(cell, 0).key, cluster.evidence, cluster.log_odds});
     cells.erase(cell, gone);
   }
-  if (options.learning_rate == LearningRate::SampleMean) return all;  // clusters are sums of what is left
+  // The coarse clusters of SampleMean are stale now. They are recomputed from their children later.
+  if (options.learning_rate == LearningRate::SampleMean) return all;
   for (int scale = 1; scale < cells.scales(); ++scale) {
     std::vector<std::uint32_t>& list = changed[static_cast<std::size_t>(scale)];
     std::sort(list.begin(), list.end());

@@ -11,7 +11,8 @@
 namespace gaussmap::detail {
 namespace {
 
-/// d(p, w) of [2], the factor of each cluster computed when it is first asked for.
+/// Finds the nearest cluster by d(p, w), Yguel 2009 eq. (2). The Cholesky factor of a cluster is computed at its first
+/// use.
 template <int D>
 class NearestCluster {
  public:
@@ -32,7 +33,7 @@ class NearestCluster {
     }
     return best;
   }
-  /// The covariance of a cluster has changed.
+  /// Drops the factor of a cluster whose covariance has changed.
   void forget(std::size_t c) { factors_[c].reset(); }
 
  private:
@@ -40,13 +41,14 @@ class NearestCluster {
   std::vector<std::optional<SmallCholesky<D>>> factors_;
 };
 
-/// eps(o), eq. (5).
+/// Returns the learning rate eps(o), Yguel 2009 eq. (5).
 double rateOf(double log_odds, const OnlineOptions& options) {
   const double most = options.occupancy.max_log_odds;
   return (options.slowest_rate - options.fastest_rate) / (2.0 * most) * (log_odds + most) + options.fastest_rate;
 }
 
-/// Algorithm 1. The noise floor is learnt with every point: it neither fades nor adds up.
+/// Moves a cluster towards a point, Yguel 2009 Algorithm 1. Every point also adds the variance of the noise floor, so
+/// the part of the noise in the covariance stays constant.
 template <int D>
 void learn(OnlineCluster<D>& cluster, const Vector<D>& point, const OnlineOptions& options, double noise) {
   const double rate = rateOf(double(cluster.log_odds), options);
@@ -57,7 +59,8 @@ void learn(OnlineCluster<D>& cluster, const Vector<D>& point, const OnlineOption
   gaussian.weight += 1.0;
 }
 
-/// Links a new finest cell to a cluster of each coarser scale, or begins one there.
+/// Links the cluster of a new finest cell to the nearest cluster of its parent cell. If the parent cell has no cluster,
+/// it gets one, which is linked to the next coarser scale in the same way.
 template <int D>
 void linkUpwards(OnlineCells<D>& cells, std::uint32_t finest) {
   std::uint32_t child = finest;
@@ -100,12 +103,13 @@ void addExactly(OnlineCells<D>& cells, OnlineScan<D>& scan, const OnlineOptions&
   scan.sums = std::move(sums);
 }
 
-/// Every scale learns by itself; within one, cells are independent, and a cell takes its points in the scan's order.
+/// Every scale learns directly from the points. The cells of a scale are independent of each other. Each cell learns
+/// its points in the order of the scan.
 template <int D>
 void learnAll(OnlineCells<D>& cells, OnlineScan<D>& scan, const OnlineOptions& options) {
   const Grid<D>& grid = cells.grid();
   const double noise = grid.options().noise;
-  std::vector<CellKey<D>> keys;  // all of them before the map changes: one may be out of range
+  std::vector<CellKey<D>> keys;  // computed before the map changes, because keyOf() can throw std::out_of_range
   for (const Vector<D>& point : scan.points) keys.push_back(grid.keyOf(point));
   std::vector<std::pair<std::uint32_t, std::uint32_t>> finest;  // cell, point
   for (std::size_t i = 0; i < keys.size(); ++i) {
@@ -164,7 +168,7 @@ void restoreCell(OnlineCells<D>& cells, const RemovedCluster<D>& removed, const 
   OnlineCluster<D> back;
   back.gaussian = removed.gaussian;
   back.gaussian.mean -= grid.centre(removed.key, 0);
-  back.log_odds = static_cast<float>(options.occupancy.max_log_odds);  // else the next miss would delete it again
+  back.log_odds = static_cast<float>(options.occupancy.max_log_odds);  // otherwise, the next miss would delete it again
   back.evidence = removed.evidence;
   const bool is_new = cells.cell(cell, 0).clusters.empty();
   if (is_new) cells.addCluster(cell, 0, back);

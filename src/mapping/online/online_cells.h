@@ -16,36 +16,36 @@
 
 namespace gaussmap::detail {
 
-/// A Gaussian of the map while it is built on line.
+/// A Gaussian of a map that is built online.
 template <int D>
 struct OnlineCluster {
   Gaussian<D> gaussian;  // mean about the centre of its cell
-  double area = 1.0;     // finest cells that it represents
+  double area = 1.0;     // number of finest cells that it represents
   float log_odds = 0.0f;
-  std::uint32_t parent = 0;  // its cluster, among those of the parent cell
+  std::uint32_t parent = 0;  // index of its parent among the clusters of the parent cell
   Evidence evidence;
 };
 
-/// The clusters of a cell. Most cells hold one, which needs no memory of its own.
+/// The clusters of a cell. Most cells hold one cluster, which is stored without a separate allocation.
 template <int D>
 using OnlineClusters = boost::container::small_vector<OnlineCluster<D>, 1>;
 
-/// A cell of any scale. The finest hold one cluster.
+/// A cell of any scale. A finest cell holds one cluster.
 template <int D>
 struct OnlineCell {
   CellKey<D> key;
-  std::uint32_t parent = 0;             // cell of the coarser scale
-  std::uint32_t place = 0;              // among the children of the parent
-  std::vector<std::uint32_t> children;  // cells of the finer scale
+  std::uint32_t parent = 0;             // parent cell, at the next coarser scale
+  std::uint32_t place = 0;              // position among the children of the parent
+  std::vector<std::uint32_t> children;  // child cells, at the next finer scale
   OnlineClusters<D> clusters;
   bool alive = false;
-  bool stale = false;  // coarse: a child has changed since the clusters were summed
-  double need = 0.0;   // coarse: what one more cluster would gain, as of the last refinement that touched it
-  double spare = 0.0;  // coarse: what its last cluster gained
+  bool stale = false;  // coarse cells: a child has changed since the clusters were computed
+  double need = 0.0;   // coarse cells: gain of one more cluster, as of the last refinement that touched the cell
+  double spare = 0.0;  // coarse cells: gain of the last cluster, which is lost if it is taken away
 };
 
-/// The cells of all scales while the map changes. An index stays the cell's until it is erased; then it is given to
-/// the next new cell, so that memory does not grow with time.
+/// The cells of all scales of a map that changes. A cell keeps its index until it is erased. A later new cell then gets
+/// this index again, so the memory does not grow with time.
 template <int D>
 class OnlineCells {
  public:
@@ -55,23 +55,23 @@ class OnlineCells {
 
   const Grid<D>& grid() const { return grid_; }
   int scales() const { return grid_.scales(); }
-  /// Slots of a scale, dead ones too.
+  /// Number of slots of a scale, including those of erased cells.
   std::size_t slots(int scale) const { return level(scale).cells.size(); }
-  /// Cells of a scale.
+  /// Number of cells of a scale.
   std::size_t size(int scale) const { return level(scale).index.size(); }
   std::size_t clusterCount(int scale) const { return level(scale).clusters; }
   OnlineCell<D>& cell(std::uint32_t i, int scale) { return level(scale).cells[i]; }
   const OnlineCell<D>& cell(std::uint32_t i, int scale) const { return level(scale).cells[i]; }
-  /// Sums of a finest cell.
+  /// Moments of a finest cell.
   CellMoments<D>& moments(std::uint32_t i) { return moments_[i]; }
   const CellMoments<D>& moments(std::uint32_t i) const { return moments_[i]; }
 
-  /// kNone if there is no such cell.
+  /// Returns the index of a cell, or kNone if there is no such cell.
   std::uint32_t find(const CellKey<D>& key, int scale) const;
-  /// The finest cell of a key, created with its ancestors if it does not exist; a new one has no cluster yet.
+  /// Returns the finest cell with a key. If it does not exist, creates it, and its missing ancestors, without clusters.
   std::uint32_t findOrInsert(const CellKey<D>& key);
-  /// Erases a finest cell, and the coarse clusters and cells that represented nothing else. Calls
-  /// `gone(cell, cluster, scale)` before each cluster is erased.
+  /// Erases a finest cell, and then the coarse clusters and cells that have no children left. Calls
+  /// gone(cell, cluster, scale) before each cluster is erased.
   template <typename Gone>
   void erase(std::uint32_t finest, const Gone& gone);
   /// Replaces the clusters of a coarse cell.
@@ -79,24 +79,27 @@ class OnlineCells {
   /// Gives a new finest cell its cluster.
   void addCluster(std::uint32_t i, int scale, const OnlineCluster<D>& cluster);
 
-  /// The clusters of the finer cells under a coarse cell, in the order of `children`, means about the coarse centre.
+  /// Returns the clusters of the child cells of a coarse cell, in the order of `children`. Their means are about the
+  /// centre of the coarse cell [m].
   std::vector<Gaussian<D>> dataUnder(std::uint32_t i, int scale) const;
+  /// Calls body(cluster) for the clusters of dataUnder(), in the same order.
   template <typename Body>
   void forClustersUnder(std::uint32_t i, int scale, const Body& body) {
     for (const std::uint32_t child : cell(i, scale).children)
       for (OnlineCluster<D>& cluster : cell(child, scale - 1).clusters) body(cluster);
   }
-  /// Recomputes stale coarse clusters of the cell from the finer ones linked to them, [9], [10].
+  /// Recomputes the clusters of a stale coarse cell from their children, Yguel 2009 eqs. (9), (10). Stale cells under
+  /// it are recomputed first.
   void refresh(std::uint32_t i, int scale);
-  /// Marks a coarse cell and its ancestors as stale: a cell under it has changed. All ancestors of a stale cell are
-  /// stale.
+  /// Marks a coarse cell and all its ancestors as stale, because a cell under it has changed. So all ancestors of a
+  /// stale cell are always stale.
   void markStale(std::uint32_t i, int scale);
 
   std::size_t memoryBytes() const;
 
  private:
   struct Level {
-    std::deque<OnlineCell<D>> cells;  // grows without moving what is there
+    std::deque<OnlineCell<D>> cells;  // a deque, because it grows without moving the cells
     std::vector<std::uint32_t> free;
     KeyIndex index;
     std::size_t clusters = 0;
@@ -119,7 +122,7 @@ void OnlineCells<D>::erase(std::uint32_t finest, const Gone& gone) {
     OnlineCell<D>& dead = cell(i, scale);
     if (scale == 0) gone(i, std::size_t{0}, 0);
     if (scale > 0 && !dead.children.empty()) {
-      // A cluster that no finer one is linked to represents nothing any more.
+      // A cluster without children represents nothing, so it is erased.
       std::vector<std::uint32_t> members(dead.clusters.size(), 0);
       forClustersUnder(i, scale, [&](OnlineCluster<D>& finer) { ++members[finer.parent]; });
       OnlineClusters<D> left;
@@ -135,7 +138,7 @@ void OnlineCells<D>::erase(std::uint32_t finest, const Gone& gone) {
       forClustersUnder(i, scale, [&](OnlineCluster<D>& finer) { finer.parent = place[finer.parent]; });
       setClusters(i, scale, std::move(left));
       dead.need = dead.spare = 0.0;  // unknown until the next refinement that touches the cell
-      i = dead.parent;               // a coarser cluster may have represented the one that is gone
+      i = dead.parent;               // the parents of the erased clusters may have no children left
       continue;
     }
     if (scale > 0)
@@ -146,7 +149,7 @@ void OnlineCells<D>::erase(std::uint32_t finest, const Gone& gone) {
   }
 }
 
-/// The finest cells in the form that object_rules.h takes.
+/// Gives the functions of object_rules.h access to the finest cells.
 template <int D>
 struct FinestOnlineCells {
   using Index = std::uint32_t;

@@ -43,7 +43,7 @@ void checkOptions(const OnlineOptions& options) {
   detail::checkOptions(views);
 }
 
-/// Seconds since the last call.
+/// Measures the seconds since the last call of lap().
 class StopWatch {
  public:
   double lap() {
@@ -102,20 +102,20 @@ struct OnlineMapper<D>::State {
   OnlineOptions options;
   OnlineCells<D> cells;
   Removed removed;
-  std::deque<SensorView> views;    // the last look_back ones, oldest first
-  std::deque<ScanSums<D>> recent;  // of as many scans
+  std::deque<SensorView> views;    // the last look_back range images, oldest first
+  std::deque<ScanSums<D>> recent;  // moments of the last look_back scans, oldest first
   std::uint32_t scans = 0;
 
-  std::optional<Projection> found;  // in an earlier scan ...
-  double found_fill = 0.0;          // ... of whose points so many had a pixel for themselves
-  int found_columns = 0;
+  std::optional<Projection> found;  // projection found in an earlier scan
+  double found_fill = 0.0;          // filled pixels per return of that scan
+  int found_columns = 0;            // columns of that scan
 
   std::optional<RangeImage> imageOf(const Scan& scan, std::size_t returns);
   GaussianMap<D> freeze();
 };
 
-/// The image of a scan. A projection is found once and kept for as long as scans look alike in it: all but one in 200
-/// points are in view, and they fill as many pixels, give or take a fifth.
+/// Returns the range image of a scan, or std::nullopt if no projection is found. A projection is kept while it fits the
+/// scans: at least 199 of 200 returns are in view, and the filled pixels per return change by at most a fifth.
 template <int D>
 std::optional<RangeImage> OnlineMapper<D>::State::imageOf(const Scan& scan, std::size_t returns) {
   const auto fill = [](const RangeImage& image) {
@@ -202,8 +202,8 @@ GaussianMap<D> OnlineMapper<D>::State::freeze() {
       if (cells.cell(i, top).alive) cells.refresh(i, top);
 
   std::vector<MapScale<D>> scales(static_cast<std::size_t>(cells.scales()));
-  std::vector<std::uint32_t> order;   // slots of the scale above, in key order
-  std::vector<std::uint32_t> starts;  // first Gaussian of each of its slots
+  std::vector<std::uint32_t> order;   // slots of the next coarser scale, in key order
+  std::vector<std::uint32_t> starts;  // first Gaussian per slot of that scale
   for (int scale = top; scale >= 0; --scale) {
     MapScaleBuilder<D> out;
     std::vector<std::uint32_t> here;
@@ -253,7 +253,7 @@ template <int D>
 void OnlineMapper<D>::restore(const RemovedCluster<D>& removed) {
   if (removed.scale != 0)
     throw std::invalid_argument("scale " + std::to_string(removed.scale) +
-                                ": only finest clusters are restored, the coarser follow");
+                                ": only clusters of scale 0 can be restored; coarser clusters are computed from them");
   restoreCell(state_->cells, removed, state_->options);
 }
 

@@ -24,19 +24,19 @@ struct OnlineScan {
   Pose pose;
   std::vector<Vector<D>> points;         // returns [m, map frame]
   std::vector<std::uint32_t> touched;    // finest cells with points, in the order they were touched
-  std::vector<std::uint32_t> new_cells;  // of them, those not there before
+  std::vector<std::uint32_t> new_cells;  // touched cells that did not exist before
   std::vector<std::uint32_t> missed;     // finest cells that beams passed through; may contain a cell twice
-  std::optional<MomentGrid<D>> sums;     // of its points; LearningRate::SampleMean only
+  std::optional<MomentGrid<D>> sums;     // moments of the points; LearningRate::SampleMean only
 };
 
-/// The sums of a recent scan, kept to take its points out of the map again.
+/// The moments of a recent scan, kept so that its points can be removed from the map.
 template <int D>
 struct ScanSums {
   std::uint32_t number;
   MomentGrid<D> sums;
 };
 
-/// A finest cell of an object that has gone.
+/// A deleted finest cell of an object that has moved away.
 template <int D>
 struct GoneCell {
   CellKey<D> key;
@@ -44,7 +44,7 @@ struct GoneCell {
   float log_odds;
 };
 
-/// A range image and where it was taken.
+/// A range image and the pose of the sensor.
 struct SensorView {
   SensorView(RangeImage seen, const Pose& from)
       : image(std::move(seen)), pose(from), to_sensor(from.rotation.toRotationMatrix().transpose()) {}
@@ -53,11 +53,11 @@ struct SensorView {
   Pose pose;
   Eigen::Matrix3d to_sensor;
 
-  /// Map frame to sensor frame.
+  /// Transforms a point from the map frame to the sensor frame [m].
   Eigen::Vector3d toSensor(const Eigen::Vector3d& point) const { return to_sensor * (point - pose.translation); }
 };
 
-/// A point of the map in space: in the plane, at the height of the sensor.
+/// Returns a point of the map as a 3-D point. A point of a 2-D map gets the height of the sensor.
 inline Eigen::Vector3d inSpace(const Vector<3>& point, const Pose&) {
   return point;
 }
@@ -65,60 +65,68 @@ inline Eigen::Vector3d inSpace(const Vector<2>& point, const Pose& sensor) {
   return {point.x(), point.y(), sensor.translation.z()};
 }
 
-/// Points into cells: Yguel 2009, sec. 4.3 and 4.4, Algorithm 1. Fills `touched` and `new_cells`.
+/// Adds the points of a scan to their cells, Yguel 2009, sec. 4.3 and 4.4, Algorithm 1. Sets scan.touched,
+/// scan.new_cells and scan.sums. Throws std::out_of_range if a point lies beyond the range of 32-bit cell indices; the
+/// map does not change then.
 template <int D>
 void updateByPoints(OnlineCells<D>& cells, OnlineScan<D>& scan, const OnlineOptions& options);
 
-/// Puts a deleted finest cluster back; if its cell is occupied again meanwhile, adds it to what is there.
+/// Puts a deleted finest cluster back. If its cell exists again, the cluster is added to the cluster of the cell.
 template <int D>
 void restoreCell(OnlineCells<D>& cells, const RemovedCluster<D>& removed, const OnlineOptions& options);
 
-/// Tests the new cells against the range images of the scans before.
+/// Tests the new cells against the range images of earlier scans.
 template <int D>
 void lookBack(OnlineCells<D>& cells, OnlineScan<D>& scan, const std::deque<SensorView>& views,
               const OnlineOptions& options);
 
-/// Counts a hit for every cluster with one of these finest cells under it.
+/// Counts a hit for the clusters of the finest cells `touched` and for all their ancestors, once per cluster.
 template <int D>
 void countHits(OnlineCells<D>& cells, const OnlineScan<D>& scan, const std::vector<std::uint32_t>& touched,
                const OnlineOptions& options);
 
-/// Counts a miss for every cluster that the scan did not hit and passes through, Yguel 2009, sec. 4.1 and 4.2.
+/// Counts a miss for every cluster that the scan did not hit and that its beams passed through, Yguel 2009, sec. 4.1
+/// and 4.2.
 template <int D>
 void countMisses(OnlineCells<D>& cells, OnlineScan<D>& scan, const SensorView& view, const OnlineOptions& options,
                  OnlineStatistics& statistics);
 
-/// Deletes clusters with log-odds below 0 and the rest of their objects, Yguel 2009, sec. 5.3. Returns the finest cells
-/// deleted.
+/// Deletes the finest clusters with log-odds below 0 and the other cells of their objects, Yguel 2009, sec. 5.3. Also
+/// deletes coarser clusters without children. Returns the deleted finest cells.
 template <int D>
 std::vector<GoneCell<D>> forget(OnlineCells<D>& cells, const OnlineScan<D>& scan, const OnlineOptions& options,
                                 const typename OnlineMapper<D>::Removed& removed, OnlineStatistics& statistics);
 
-/// Takes what the last scans saw of the object out of the cells beside it, where that lies off their surface.
+/// Removes the points of deleted objects from the cells beside them. In each such cell, the function tests the points
+/// of the `recent` scans that may have seen the object. It removes the points of a scan if they lie off the surface in
+/// the cell.
 template <int D>
 void splitSharedCells(OnlineCells<D>& cells, const OnlineScan<D>& scan, const std::vector<GoneCell<D>>& gone,
                       std::deque<ScanSums<D>>& recent, const OnlineOptions& options,
                       const typename OnlineMapper<D>::Removed& removed, OnlineStatistics& statistics);
 
-/// Looks at the coarse cells with points of the scan, and gives clusters to the cells of the map that are known to need
-/// them most; Yguel 2009, sec. 5.1 (there: to the visible cells only).
+/// Measures the need for clusters of the coarse cells with points of the scan. Then adds clusters to the cells of the
+/// whole map with the largest known need, Yguel 2009, sec. 5.1 (the paper: to visible cells only).
 template <int D>
 void refineVisible(OnlineCells<D>& cells, const OnlineScan<D>& scan, const OnlineOptions& options,
                    OnlineStatistics& statistics);
 
-/// Gives a coarse cell other clusters: `references` (about its centre), labels = which of them each finer cluster under
-/// it belongs to. Each takes over what is known of the old cluster that most of its members come from.
+/// Replaces the clusters of a coarse cell by `references` (means about the centre of the cell [m]). `labels` = new
+/// cluster of each finer cluster under the cell. A new cluster takes over the occupancy, evidence and parent of the old
+/// cluster with the largest part of its weight.
 template <int D>
 void recluster(OnlineCells<D>& cells, std::uint32_t i, int scale, const std::vector<Gaussian<D>>& references,
                const std::vector<int>& labels);
 
-/// What a hit or a miss does to a cluster.
+/// Counts a hit of a cluster by a scan, at most once per scan, and raises its log-odds.
 template <int D>
 void hit(OnlineCluster<D>& cluster, std::uint32_t scan, const OccupancyOptions& options) {
   if (cluster.evidence.hits > 0 && cluster.evidence.last_hit == scan) return;
   cluster.evidence.hit(scan);
   cluster.log_odds = static_cast<float>(std::min(options.max_log_odds, double(cluster.log_odds) + options.hit));
 }
+/// Lowers the log-odds of a cluster. `share` = fraction of its samples that beams passed through; above 0.5, it counts
+/// as a miss.
 template <int D>
 void miss(OnlineCluster<D>& cluster, double share, const OccupancyOptions& options) {
   if (share > 0.5) cluster.evidence.miss();

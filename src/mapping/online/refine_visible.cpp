@@ -15,10 +15,10 @@
 namespace gaussmap::detail {
 namespace {
 
-/// A coarse cell that the scan has touched.
+/// A coarse cell with points of the scan.
 struct Touched {
   std::uint32_t cell = 0;
-  double error = 0.0;  // [6]
+  double error = 0.0;  // Yguel 2009 eq. (6)
   Dendrogram dendrogram;
 };
 
@@ -29,7 +29,7 @@ std::vector<Gaussian<D>> referencesOf(const OnlineCell<D>& cell) {
   return references;
 }
 
-/// Whether the finer clusters under the cell are there, on the whole: mean probability above one half.
+/// Returns true if the mean probability of occupancy of the finer clusters under the cell is above one half.
 template <int D>
 bool isOccupied(OnlineCells<D>& cells, std::uint32_t i, int scale) {
   double sum = 0.0, count = 0.0;
@@ -48,7 +48,7 @@ Dendrogram dendrogramOf(OnlineCells<D>& cells, std::uint32_t i, int scale, std::
   return agglomerate(data, areas);
 }
 
-/// What the next cluster of a cell would gain, and what the last one has gained.
+/// Sets `need` and `spare` of a cell: the gain of one more cluster, and the gain of its last cluster.
 template <int D>
 void noteGains(OnlineCell<D>& cell, const Dendrogram& dendrogram) {
   const std::vector<double> gains = mergeGains(dendrogram);
@@ -57,13 +57,13 @@ void noteGains(OnlineCell<D>& cell, const Dendrogram& dendrogram) {
   cell.spare = parts >= 2 && parts - 2 < gains.size() ? gains[parts - 2] : 0.0;
 }
 
-/// Looks at the coarse cells with points of the scan, and notes what they need.
+/// Returns the coarse cells with points of the scan, with their errors, and sets their `need` and `spare`.
 template <int D>
 std::vector<Touched> lookAtTouched(OnlineCells<D>& cells, const OnlineScan<D>& scan, int scale,
                                    const OnlineOptions& options) {
   std::vector<std::uint32_t> touched;
   for (std::uint32_t i : scan.touched) {
-    if (!cells.cell(i, 0).alive) continue;  // forgotten meanwhile
+    if (!cells.cell(i, 0).alive) continue;  // deleted by forget()
     for (int s = 0; s < scale; ++s) i = cells.cell(i, s).parent;
     touched.push_back(i);
   }
@@ -102,10 +102,10 @@ void setParts(OnlineCells<D>& cells, std::uint32_t i, int scale, const Dendrogra
   recluster(cells, i, scale, references, of);
 }
 
-/// A value and its cell; of equal values the smaller slot comes first.
+/// A value and its cell (negative slot). Of equal values, the smaller slot is first.
 using Entry = std::pair<double, std::int64_t>;
 
-/// The cells of a scale with a positive `value`, the largest (sign = 1) or the smallest (sign = -1) on top.
+/// Returns the cells of a scale with a positive `value`; the largest (sign = 1) or smallest (sign = -1) is on top.
 template <int D>
 std::priority_queue<Entry> queueOf(const OnlineCells<D>& cells, int scale, double OnlineCell<D>::*value, double sign) {
   std::vector<Entry> entries;
@@ -115,7 +115,7 @@ std::priority_queue<Entry> queueOf(const OnlineCells<D>& cells, int scale, doubl
   return std::priority_queue<Entry>(std::less<Entry>(), std::move(entries));
 }
 
-/// Cuts a cell into so many clusters.
+/// Agglomerates the finer clusters under a cell into at most `parts` clusters.
 template <int D>
 void cutInto(std::size_t parts, OnlineCells<D>& cells, std::uint32_t i, int scale) {
   const Dendrogram dendrogram = dendrogramOf(cells, i, scale, cells.dataUnder(i, scale));
@@ -123,7 +123,7 @@ void cutInto(std::size_t parts, OnlineCells<D>& cells, std::uint32_t i, int scal
   noteGains(cells.cell(i, scale), dendrogram);
 }
 
-/// Takes a cluster from the cell that it gained least; returns the cell.
+/// Removes one cluster from the cell where it gains least. Returns this cell.
 template <int D>
 std::uint32_t takeOne(OnlineCells<D>& cells, int scale, std::priority_queue<Entry>& rich) {
   const auto from = static_cast<std::uint32_t>(-rich.top().second);
@@ -139,7 +139,7 @@ void insertOne(OnlineCells<D>& cells, std::uint32_t i, int scale, ClusterSeed se
   options.seed_rule = seed_rule;
   const KLClustering<D> found = insertCluster(cells.dataUnder(i, scale), referencesOf(cells.cell(i, scale)), options);
   recluster(cells, i, scale, found.references, found.labels);
-  cells.cell(i, scale).need = 0.0;  // until it is looked at again
+  cells.cell(i, scale).need = 0.0;  // until the next refinement that touches the cell
 }
 
 }  // namespace
@@ -177,7 +177,7 @@ void refineVisible(OnlineCells<D>& cells, const OnlineScan<D>& scan, const Onlin
     double error = 0.0;
     for (const Touched& touched : all) error += touched.error;
     statistics.errors[static_cast<std::size_t>(scale)] = all.empty() ? 0.0 : error / double(all.size());
-    // New finer clusters have joined the nearest coarse ones: the best parts may be others by now.
+    // New finer clusters were linked to the nearest coarse clusters. Now a different partition can be better.
     for (const Touched& touched : all) {
       const std::size_t parts = cells.cell(touched.cell, scale).clusters.size();
       if (parts > 1 && touched.dendrogram.size >= parts)
@@ -187,7 +187,7 @@ void refineVisible(OnlineCells<D>& cells, const OnlineScan<D>& scan, const Onlin
     std::priority_queue<Entry> needy = queueOf(cells, scale, &OnlineCell<D>::need, 1.0), rich;
     const double most = std::floor(options.budget * double(cells.size(scale)));
     if (options.method == RefineMethod::Agglomerate && double(cells.clusterCount(scale)) > most) {
-      // Cells have been forgotten, and the budget shrank with them.
+      // Cells were deleted, so the budget is smaller now.
       rich = queueOf(cells, scale, &OnlineCell<D>::spare, -1.0);
       while (!rich.empty() && double(cells.clusterCount(scale)) > most) takeOne(cells, scale, rich);
     }
@@ -197,7 +197,7 @@ void refineVisible(OnlineCells<D>& cells, const OnlineScan<D>& scan, const Onlin
       const auto next = static_cast<std::uint32_t>(-needy.top().second);
       const double need = needy.top().first;
       if (double(cells.clusterCount(scale)) + 1.0 > most) {
-        // The budget is used: what a cluster gains here must be more than what one elsewhere has gained.
+        // The budget is used up: a cluster moves here only if it gains more here than in the cell that loses it.
         if (options.method == RefineMethod::Insert) break;
         if (rich.empty()) rich = queueOf(cells, scale, &OnlineCell<D>::spare, -1.0);
         if (rich.empty() || !(need > -rich.top().first)) break;

@@ -12,13 +12,13 @@
 namespace gaussmap::detail {
 namespace {
 
-/// A cell beside an object that has gone.
+/// A cell beside a deleted object.
 struct CellBesideObject {
-  std::uint32_t first_scan, last_scan;  // that may have seen the object in the cell
+  std::uint32_t first_scan, last_scan;  // first and last scan that may have seen the object in the cell
   float log_odds;                       // of the object
 };
 using CellsBesideObjects =
-    std::map<std::uint32_t, CellBesideObject>;  // in the order of cells: the result depends on it
+    std::map<std::uint32_t, CellBesideObject>;  // a std::map, because the result depends on the order of the cells
 
 template <int D>
 CellsBesideObjects cellsBeside(const OnlineCells<D>& cells, const std::vector<GoneCell<D>>& gone) {
@@ -38,7 +38,8 @@ class SharedCellSplitter {
 
   const CellsBesideObjects& shared() const { return shared_; }
 
-  /// Calls body(scan, sums) for the scans that saw the object and points in this cell.
+  /// Calls body(scan, sums) for the recent scans that may have seen the object and have points in this cell. `sums` =
+  /// moments of these points.
   template <typename Body>
   void forScans(std::uint32_t cell, const CellBesideObject& of, const Body& body) const {
     for (const ScanSums<D>& scan : recent_) {
@@ -48,7 +49,7 @@ class SharedCellSplitter {
     }
   }
 
-  /// The points of a cell from the scans that did not see the object.
+  /// Returns the moments of a cell without the points of the scans that may have seen the object.
   CellMoments<D> still(std::uint32_t cell) const {
     CellMoments<D> moments = cells_.moments(cell);
     const auto entry = shared_.find(cell);
@@ -57,7 +58,7 @@ class SharedCellSplitter {
     return moments;
   }
 
-  /// The scans whose points in the cell lie off its surface.
+  /// Returns the numbers of the scans whose points in the cell lie off its surface.
   std::vector<std::uint32_t> scansOff(std::uint32_t cell, const CellBesideObject& of) const {
     std::vector<std::uint32_t> off;
     bool seen = false;
@@ -82,7 +83,7 @@ class SharedCellSplitter {
   const CellsBesideObjects shared_;
 };
 
-/// Takes the sums of a cell out of what is remembered of a scan.
+/// Removes the moments of a cell from the stored moments of a scan, and returns them.
 template <int D>
 CellMoments<D> takeFrom(MomentGrid<D>& scan, const CellKey<D>& key) {
   const CellMoments<D>* found = scan.find(key);
@@ -94,7 +95,7 @@ CellMoments<D> takeFrom(MomentGrid<D>& scan, const CellKey<D>& key) {
   return taken;
 }
 
-/// Takes the sums of these scans out of a cell.
+/// Removes the points of these scans from a cell, and returns their moments.
 template <int D>
 CellMoments<D> takeOut(OnlineCells<D>& cells, std::uint32_t cell, const std::vector<std::uint32_t>& scans,
                        std::deque<ScanSums<D>>& recent) {
@@ -116,10 +117,10 @@ void splitSharedCells(OnlineCells<D>& cells, const OnlineScan<D>& scan, const st
                       std::deque<ScanSums<D>>& recent, const OnlineOptions& options,
                       const typename OnlineMapper<D>::Removed& removed, OnlineStatistics& statistics) {
   if (gone.empty() || recent.empty()) return;
-  for (ScanSums<D>& seen : recent)  // when there is a cell again, these points will not be in it
+  for (ScanSums<D>& seen : recent)  // if the cell is created again, it will not contain these points
     for (const GoneCell<D>& cell : gone) takeFrom<D>(seen.sums, cell.key);
   const SharedCellSplitter<D> splitter(cells, recent, options, cellsBeside(cells, gone));
-  std::map<std::uint32_t, std::vector<std::uint32_t>> off;  // all of them before the map changes
+  std::map<std::uint32_t, std::vector<std::uint32_t>> off;  // computed for all cells before the map changes
   for (const auto& [cell, shared] : splitter.shared()) {
     std::vector<std::uint32_t> scans = splitter.scansOff(cell, shared);
     if (!scans.empty()) off.emplace(cell, std::move(scans));

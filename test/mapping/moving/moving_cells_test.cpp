@@ -157,7 +157,7 @@ TEST(FindMovingCells, TakesEmptyMapsAndRefusesEvidenceOfAnotherMap) {
     findMovingCells(line.map(), std::vector<Evidence>(3));
     FAIL();
   } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(), "3 pieces of evidence for 1 cells");
+    EXPECT_STREQ(error.what(), "3 entries of evidence for a map with 1 finest cells, expected one per cell");
   }
 }
 
