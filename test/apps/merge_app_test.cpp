@@ -160,7 +160,7 @@ TEST_F(MergeApp, CropsPartsThatMergeToTheWhole) {
                   {"crop", scene("plain.gmap"), "-o", own("x.gmap"), "--box", "900", "900", "901", "901"});
   expectUsageError("one of --box and --polygon", {"crop", scene("plain.gmap"), "-o", own("x.gmap")});
   expectUsageError("first corner", {"crop", scene("plain.gmap"), "-o", own("x.gmap"), "--box", "3", "3", "2", "2"});
-  expectUsageError("not 5 numbers",
+  expectUsageError("5 numbers found",
                    {"crop", scene("plain.gmap"), "-o", own("x.gmap"), "--box", "1", "2", "3", "4", "5"});
   expectUsageError("three corners",
                    {"crop", scene("plain.gmap"), "-o", own("x.gmap"), "--polygon", "1", "2", "3", "4", "5", "6", "7"});
