@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# What tools see without running anything: layers, public headers, clang-format, cppcheck, clang-tidy.
+# What tools see without running anything: layers, plain words, public headers, clang-format, cppcheck, clang-tidy.
 # Usage: test/lint.sh [--quick | --changed [REV] | FILE...]
 #   --quick          without clang-tidy, which takes as long as a build
 #   --changed [REV]  clang-tidy checks the sources that differ from REV only (default: the last commit)
