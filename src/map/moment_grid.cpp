@@ -47,7 +47,7 @@ GAUSSMAP_CLONES std::uint64_t snapAxis(const double* coordinates, std::size_t si
   return misfits;
 }
 
-/// One step of the hash of a key. It has 32 bits, so it runs in vector registers.
+/// One step of the hash of a key. The hash has 32 bits, so it can be computed in vector registers.
 inline std::uint32_t mix(std::uint32_t hash, std::int32_t coordinate) {
   hash = (hash ^ static_cast<std::uint32_t>(coordinate)) * 0x9E3779B1u;
   return hash ^ (hash >> 15);

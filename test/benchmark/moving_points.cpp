@@ -97,8 +97,8 @@ double online(const Sequence& sequence, double resolution) {
   const double seconds = wallSeconds() - start;
   const GaussianMap<3> map = mapper.map();
   print("pcd2map --online", sequence.score([&](auto s, auto p) {
-    // A point is removed if its cell is. If a part of the cell was deleted, a point is also removed if it lies beyond
-    // three standard deviations of the rest.
+    // A point counts as removed if its cell was removed. If only a part of the cell was deleted, a point counts as
+    // removed if it lies beyond three standard deviations of the rest.
     const Eigen::Vector3d point = sequence.inMap(s, p);
     const auto cell = map.find(map.grid().keyOf(point), 0);
     return !cell ||

@@ -27,7 +27,7 @@ struct Options {
   std::vector<std::size_t> points = {5000000, 20000000};  ///< sizes of the simulated drive
   std::string data;                                       ///< directory with kitti_6scans and so on; may be empty
   std::string build;                                      ///< build directory, with apps/gaussmap
-  int runs = 5;  ///< number of runs, of which the fastest counts; at most 3 above 10 M points
+  int runs = 5;                                           ///< the fastest one counts; at most 3 above 10 M points
 };
 
 /// Measures the speed-up of two threads on this machine, for work without shared data.
