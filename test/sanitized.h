@@ -3,7 +3,7 @@
 
 namespace gaussmap::test {
 
-/// Built with a sanitizer: everything takes several times as long and terabytes of address space.
+/// True if built with a sanitizer: everything then takes several times longer and needs terabytes of address space.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 inline constexpr bool kSanitized = true;
 #elif defined(__has_feature)

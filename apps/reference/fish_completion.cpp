@@ -6,7 +6,7 @@ namespace gaussmap::app {
 namespace {
 
 const char* const kFishFunctions = R"(
-# True if the command on the line is $argv[1], or if there is none yet and none is asked for.
+# True if the command on the line is $argv[1]; without $argv[1], true if the line has no command yet.
 function __gaussmap_command_is
     for word in (commandline -opc)[2..-1]
         if not string match -q -- '-*' $word

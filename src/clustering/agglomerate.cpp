@@ -25,9 +25,9 @@ void checkOptions(const AgglomerateOptions& options) {
           "must be at least 1");
 }
 
-/// Merges all that a table holds, every pair a candidate. Each slot knows the slot after it that is cheapest to merge
-/// with. When that one is gone or changed, its cost stays as a lower bound: the slot looks for another partner only if
-/// the bound comes to be the least of all (Muellner 2011, "generic" algorithm).
+/// Merges all clusters of a table; every pair is a candidate. Each slot stores its partner: the later slot that is
+/// cheapest to merge with. If the partner is gone or has changed, its cost stays as a lower bound. The slot searches
+/// for another partner only if this bound becomes the minimum of all slots (Muellner 2011, "generic" algorithm).
 template <int D>
 class ExactMerging {
  public:
@@ -97,7 +97,7 @@ class ExactMerging {
   MergeHistory<D>& history_;
   MergeTable<D>& table_;
   std::size_t live_ = 0;
-  std::vector<double> least_;           // cost of merging with the partner; a lower bound if that is unknown
+  std::vector<double> least_;           // cost of merging with the partner; a lower bound if the partner is unknown
   std::vector<std::uint32_t> partner_;  // a later slot
   std::vector<double> row_;
 };
@@ -118,9 +118,10 @@ std::vector<int> labels(const Dendrogram& dendrogram, std::size_t k) {
   const std::size_t n = dendrogram.size;
   if (n == 0) return {};
   if (k < 1 || k > n)
-    throw std::invalid_argument("labels: " + std::to_string(k) + " parts of " + std::to_string(n) + " data");
+    throw std::invalid_argument("labels: " + std::to_string(k) + " clusters of " + std::to_string(n) +
+                                " Gaussians: give 1 to n clusters");
   const std::size_t made = n - k;
-  std::vector<std::uint32_t> top(n + made);  // of every node: the node of the last merge that it went into
+  std::vector<std::uint32_t> top(n + made);  // per node: the node of the last merge that contains it
   std::iota(top.begin(), top.end(), 0u);
   for (std::size_t t = made; t-- > 0;) top[dendrogram.merges[t].first] = top[dendrogram.merges[t].second] = top[n + t];
   std::vector<int> label_of(n + made, -1), result(n);

@@ -13,12 +13,16 @@ using namespace detail;
 
 namespace {
 
-/// Up to k references to start from: means drawn among the data as in k-means++ (Arthur & Vassilvitskii 2007), by
-/// weight times squared distance to the nearest one so far, distance and shape by the covariance of all the data.
-/// Equal shapes make the first assignment a fair partition of space. Cells of real scans, k = 12: distortion 0.497
-/// of that at k = 1 (outdoor lidar), 0.417 (RGB-D), 0.387 (indoor laser) against 0.543, 0.443, 0.462 when Algorithm 2
-/// inserts one cluster after the other without swaps between, in 0.4 of its time.
-/// Fewer than k when the data have fewer different means.
+/// Draws up to k cluster centres to start from. Their means are drawn among the input Gaussians as in k-means++ (Arthur
+/// & Vassilvitskii 2007), by weight times squared distance to the nearest centre so far. Distances use the covariance
+/// of the whole input, and every centre gets this covariance. With equal shapes, the first assignment divides space
+/// fairly.
+///
+/// Measured on cells of real scans with k = 12: the distortion is 0.497 (outdoor lidar), 0.417 (RGB-D) or 0.387 (indoor
+/// laser) of the distortion at k = 1. If Algorithm 2 inserts one cluster after the other without swaps between, it is
+/// 0.543, 0.443 or 0.462. Drawing takes 0.4 of the time of the insertion.
+///
+/// Returns fewer than k centres if the input has fewer than k different means.
 template <int D>
 std::vector<Gaussian<D>> drawReferences(const KLProblem<D>& problem, std::size_t k, Random& random) {
   const Gaussian<D> all = problem.oneCluster().references.front();
@@ -66,7 +70,7 @@ KLClustering<D> KLKMeans<D>::run(const std::vector<Gaussian<D>>& data,
                                  const std::vector<Gaussian<D>>& initial_references) const {
   const KLProblem<D> problem(data);
   if (data.empty()) return {};
-  if (initial_references.empty()) throw std::invalid_argument("k-means needs at least one initial reference");
+  if (initial_references.empty()) throw std::invalid_argument("k-means needs at least one initial cluster centre");
   std::vector<Gaussian<D>> references = initial_references;
   for (Gaussian<D>& w : references) w.mean -= problem.centre();
   return problem.finish(problem.run(std::move(references), options_));
@@ -81,7 +85,7 @@ KLClustering<D> insertCluster(const std::vector<Gaussian<D>>& data, const std::v
   if (current_references.empty()) return problem.finish(problem.oneCluster());
   std::vector<Gaussian<D>> references = current_references;
   for (Gaussian<D>& w : references) w.mean -= problem.centre();
-  // The current references with the data that are nearest to them: what line 9 looks for the worst datum in.
+  // The current centres with the Gaussians nearest to them. Line 9 looks here for the Gaussian of largest distortion.
   KLPartition<D> current;
   current.references = std::move(references);
   problem.assign(current.references, current.assignment);

@@ -13,10 +13,11 @@
 namespace gaussmap::detail {
 namespace {
 
-// Rows of the product at a time: their features stay in the first-level cache, whatever n and k are.
+// Rows of the product per block. Their features stay in the first-level cache for any n and k.
 constexpr Eigen::Index kBlock = 256;
 
-/// The nearest references that a block of data has met so far. Labels are doubles: the loops below are vectorised.
+/// The nearest cluster centres so far, for a block of Gaussians. Labels are doubles because the loops below are
+/// vectorised.
 struct NearestReferences {
   double distance[kBlock], label[kBlock];
 
@@ -26,8 +27,8 @@ struct NearestReferences {
   }
 };
 
-/// Compares rows of X with column c of Y. X: rows x F from `x`, a column every `stride`. Plain loops: the matrices of
-/// most cells are too small for a general product to pay.
+/// Compares rows of X with column c of Y. X is rows x F and starts at `x`; its columns are `stride` apart. The loops
+/// are plain because the matrices of most cells are too small for a general matrix product to be faster.
 template <int D>
 void compare(const double* x, Eigen::Index stride, Eigen::Index rows, const typename KLProblem<D>::References& y,
              Eigen::Index c, NearestReferences& nearest) {
@@ -53,14 +54,14 @@ void writeDataFeatures(const Vector<D>& mean, const Matrix<D>& cov, Row&& row) {
     for (int j = i; j < D; ++j) row(slot++) = cov(i, j) + mean(i) * mean(j);
 }
 
-/// y_w for every reference, F x k.
+/// Returns y_w of every cluster centre, F x k.
 template <int D>
 typename KLProblem<D>::References referenceFeatures(const std::vector<Gaussian<D>>& references) {
   typename KLProblem<D>::References features(KLProblem<D>::kFeatures, static_cast<Eigen::Index>(references.size()));
   for (std::size_t c = 0; c < references.size(); ++c) {
     const SmallCholesky<D> factor(references[c].cov);
     if (!factor.positive || !references[c].mean.allFinite())
-      throw std::domain_error("reference " + std::to_string(c) +
+      throw std::domain_error("cluster centre " + std::to_string(c) +
                               ": the mean is not finite or the covariance is not positive definite");
     const Matrix<D> inverse = factor.inverse();
     const Vector<D> information = inverse * references[c].mean;
@@ -77,10 +78,10 @@ typename KLProblem<D>::References referenceFeatures(const std::vector<Gaussian<D
 template <int D>
 void checkMeanAndWeight(const Gaussian<D>& datum, std::size_t index) {
   if (!(datum.weight > 0.0 && std::isfinite(datum.weight)))
-    throw std::invalid_argument("datum " + std::to_string(index) + ": weight " + numberText(datum.weight) +
+    throw std::invalid_argument("Gaussian " + std::to_string(index) + ": weight " + numberText(datum.weight) +
                                 " is not positive and finite");
   if (!datum.mean.allFinite())
-    throw std::invalid_argument("datum " + std::to_string(index) + ": the mean is not finite");
+    throw std::invalid_argument("Gaussian " + std::to_string(index) + ": the mean is not finite");
 }
 
 }  // namespace
@@ -96,7 +97,7 @@ void checkOptions(const KLKMeansOptions& options) {
 template <int D>
 KLProblem<D>::KLProblem(const std::vector<Gaussian<D>>& data) : data_(data) {
   if (data.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-    throw std::length_error("more than 2^31 - 1 data");
+    throw std::length_error("more than 2^31 - 1 Gaussians");
   double weight = 0.0;
   Vector<D> sum = Vector<D>::Zero();
   for (std::size_t j = 0; j < data.size(); ++j) {
@@ -114,8 +115,8 @@ KLProblem<D>::KLProblem(const std::vector<Gaussian<D>>& data) : data_(data) {
     const Gaussian<D>& z = data[static_cast<std::size_t>(j)];
     const SmallCholesky<D> factor(z.cov);
     if (!factor.positive)
-      throw std::domain_error("datum " + std::to_string(j) +
-                              ": covariance is not positive definite; add a noise floor to its eigenvalues");
+      throw std::domain_error("Gaussian " + std::to_string(j) +
+                              ": the covariance is not positive definite; add a noise floor to its eigenvalues");
     const double log_determinant = factor.logDeterminant();
     weighted_log_determinants_ += z.weight * log_determinant;
     weights_(j) = z.weight;
@@ -164,7 +165,7 @@ template <int D>
 void KLProblem<D>::assignAgain(KLAssignment<D>& assignment, const std::vector<char>& changed) const {
   const auto n = static_cast<Eigen::Index>(size()), k = assignment.references.cols();
   NearestReferences nearest;
-  double x[kFeatures * kBlock];  // data whose reference has moved
+  double x[kFeatures * kBlock];  // Gaussians whose cluster centre has moved
   for (Eigen::Index first = 0; first < n; first += kBlock) {
     const Eigen::Index rows = std::min(kBlock, n - first);
     double* const distances = assignment.distances.data() + first;
@@ -236,7 +237,7 @@ void KLProblem<D>::update(KLPartition<D>& partition) const {
     const Vector<D> spread = data_[j].mean - centre_ - w.mean;
     w.cov += data_[j].weight * (data_[j].cov + spread * spread.transpose());
   }
-  // The expectation of [8] over a cluster needs only determinants when the reference is the moment match:
+  // If the centre is the moment match, the sum of eq. (8) over a cluster needs only determinants:
   // sum alpha_j KL(z_j || w) = (alpha_w ln |Sigma_w| - sum alpha_j ln |Sigma_j|) / 2.
   double weighted_log_determinants = 0.0;
   std::size_t kept = 0;

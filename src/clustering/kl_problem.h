@@ -9,77 +9,81 @@
 
 namespace gaussmap::detail {
 
-/// Throws std::invalid_argument, naming the option.
+/// Throws std::invalid_argument if an option is out of range. The message names the option.
 void checkOptions(const KLKMeansOptions& options);
 
 template <int D>
 inline constexpr int kKLFeatures = 1 + D + D*(D + 1) / 2;
 
-/// The nearest reference of every datum. Kept from one round to the next: where a datum's reference has not moved,
-/// only those that have can be nearer.
+/// The nearest cluster centre of every input Gaussian. It is kept from one round to the next: if the centre of a
+/// Gaussian has not moved, only a centre that has moved can be nearer.
 template <int D>
 struct KLAssignment {
-  Eigen::Matrix<double, kKLFeatures<D>, Eigen::Dynamic> references;  // y_w of each
-  std::vector<double> distances;                                     // x_z . y_w of the nearest
+  Eigen::Matrix<double, kKLFeatures<D>, Eigen::Dynamic> references;  // y_w of each centre
+  std::vector<double> distances;                                     // x_z . y_w of the nearest centre
   std::vector<int> labels;
 };
 
-/// A partition while k-means works on it: means about the centre of the problem.
+/// A partition while k-means works on it. Means are relative to the centre of the problem.
 template <int D>
 struct KLPartition {
   std::vector<Gaussian<D>> references;
   std::vector<int> labels;
-  KLAssignment<D> assignment;  // the last one made; its references may be older
-  std::vector<int> counts;     // members per reference
+  KLAssignment<D> assignment;  // the last assignment; its centres can be older
+  std::vector<int> counts;     // members per cluster
   double distortion = 0.0;
   int iterations = 0;
   bool converged = true;
 };
 
-/// Data prepared for many runs of k-means: checked, centred, turned into features. With
-/// x_z = [1, mu, upper triangle of Sigma + mu mu'] the divergence [8] is linear in x_z:
+/// The input Gaussians, prepared for many runs of k-means: checked, centred and converted to features. With
+/// x_z = [1, mu, upper triangle of Sigma + mu mu'] the divergence, eq. (8), is linear in x_z:
 ///   KL(z || w) = x_z . y_w - (ln |Sigma_z| + D) / 2,   P = Sigma_w^-1,
 ///   y_w = [(mu_w' P mu_w + ln |Sigma_w|) / 2, -P mu_w, P_ii / 2 and P_ij].
-/// So all distances of an assignment are one matrix product. The data are centred about their weighted mean:
-/// mu mu' would otherwise swallow Sigma far from the origin.
+/// All distances of an assignment are therefore one matrix product. The input is centred about its weighted mean,
+/// because far from the origin mu mu' would be so large that Sigma loses its digits.
 template <int D>
 class KLProblem {
  public:
   static constexpr int kFeatures = kKLFeatures<D>;
-  using Features = Eigen::Matrix<double, Eigen::Dynamic, kFeatures>;  // n x F, a column per feature
+  using Features = Eigen::Matrix<double, Eigen::Dynamic, kFeatures>;  // n x F, one column per feature
   using References = decltype(KLAssignment<D>::references);           // F x k
 
-  /// Keeps a reference to `data`. Throws as KLKMeans says.
+  /// Keeps a C++ reference to `data`. Throws like KLKMeans.
   explicit KLProblem(const std::vector<Gaussian<D>>& data);
 
   std::size_t size() const { return data_.size(); }
   const Vector<D>& centre() const { return centre_; }
   const Eigen::VectorXd& weights() const { return weights_; }
-  /// Datum j with its mean about the centre.
+  /// Returns input Gaussian j with its mean relative to the centre.
   Gaussian<D> datum(std::size_t j) const { return {data_[j].mean - centre_, data_[j].cov, data_[j].weight}; }
 
-  /// The nearest references (means about the centre); ties go to the smaller label. Any earlier assignment of the same
-  /// problem makes it faster, and changes nothing.
+  /// Finds the nearest of these cluster centres (means relative to the centre of the problem). Ties go to the smaller
+  /// label. `assignment` can hold any earlier assignment of the same problem. This saves time and does not change the
+  /// result.
   void assign(const std::vector<Gaussian<D>>& references, KLAssignment<D>& assignment) const;
-  /// Distance [8] of every datum to the reference it is labelled with.
+  /// Returns the distance, eq. (8), of every input Gaussian to the centre of its cluster.
   Eigen::VectorXd ownDistances(const KLPartition<D>& partition) const;
-  /// All KL(u || v) of a set of references, k x k.
+  /// Returns KL(u || v) of all pairs of cluster centres, k x k.
   static Eigen::MatrixXd distancesBetween(const std::vector<Gaussian<D>>& references);
 
-  /// K-means from references (means about the centre), the fewer of them differ from those of `earlier` the faster.
+  /// Runs k-means from these cluster centres (means relative to the centre of the problem). It is faster if few of them
+  /// differ from those of `earlier`.
   KLPartition<D> run(std::vector<Gaussian<D>> references, const KLKMeansOptions& options,
                      KLAssignment<D> earlier = {}) const;
-  /// The partition with all data in one cluster.
+  /// Returns the partition with one cluster.
   KLPartition<D> oneCluster() const;
-  /// Each datum its own cluster.
+  /// Returns the clustering in which each input Gaussian is its own cluster.
   KLClustering<D> eachItsOwn() const;
-  /// The partition in the frame of the data, the references matched to their members to the last bit by merge().
+  /// Returns the partition in the frame of the input. merge() computes the centres, so they are bit-identical to the
+  /// moment matches of their members.
   KLClustering<D> finish(const KLPartition<D>& partition) const;
 
  private:
   void assignAll(KLAssignment<D>& assignment) const;
   void assignAgain(KLAssignment<D>& assignment, const std::vector<char>& changed) const;
-  /// References by [9], [10] from the labels; empty ones dropped, labels renumbered; distortion [7].
+  /// Computes the cluster centres from the labels, eqs. (9), (10). Drops empty clusters and renumbers the labels. Then
+  /// computes the distortion, eq. (7).
   void update(KLPartition<D>& partition) const;
 
   const std::vector<Gaussian<D>>& data_;

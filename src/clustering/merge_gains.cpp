@@ -6,11 +6,11 @@
 namespace gaussmap::detail {
 namespace {
 
-/// The next merge of a cell to be undone.
+/// The merge of a cell that is undone next.
 struct StandingMerge {
   double gain;
   std::size_t cell;
-  /// For std::priority_queue: a is undone after b. Equal gains: the smaller index first.
+  /// For std::priority_queue: true if a is undone after b. Equal gains: the smaller index first.
   friend bool operator<(const StandingMerge& a, const StandingMerge& b) {
     return a.gain != b.gain ? a.gain < b.gain : a.cell > b.cell;
   }

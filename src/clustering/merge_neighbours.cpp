@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compiled without contraction into fused multiply-adds: the same neighbours on every machine.
+// Compiled without fused multiply-adds, so every machine finds the same neighbours.
 #include "merge_neighbours.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace gaussmap::detail {
 namespace {
 
-/// The means of a table as nanoflann wants them.
+/// Gives nanoflann access to the means of a table.
 template <int D>
 struct MeansAdaptor {
   const MergeTable<D>& table;
@@ -22,12 +22,12 @@ struct MeansAdaptor {
   }
 };
 
-/// A pair and what it cost when its clusters had merged so many times.
+/// A pair of clusters and the cost of its merge. The cost is out of date if a version has changed since.
 struct Candidate {
   double cost;
   std::uint32_t a, b;  // slots, a < b
   std::uint32_t version_a, version_b;
-  /// For std::priority_queue: served after the other.
+  /// For std::priority_queue: true if p is served after q.
   friend bool operator<(const Candidate& p, const Candidate& q) {
     return std::tie(q.cost, q.a, q.b) < std::tie(p.cost, p.a, p.b);
   }
@@ -39,7 +39,8 @@ class NeighbourMerging {
   NeighbourMerging(MergeHistory<D>& history, std::size_t neighbours)
       : history_(history), table_(history.table), neighbours_(neighbours) {}
 
-  /// Merges down to `until` clusters, or as far as the neighbours reach. Compact before and after.
+  /// Merges until `until` clusters are left or no more pairs are neighbours. The table must be compact before and is
+  /// compact afterwards.
   void run(std::size_t until) {
     findNeighbours();
     std::size_t live = table_.slots();
@@ -64,7 +65,7 @@ class NeighbourMerging {
     const MeansAdaptor<D> means{table_};
     Tree tree(D, means, nanoflann::KDTreeSingleIndexAdaptorParams(16));
     tree.buildIndex();
-    const std::size_t count = std::min(neighbours_ + 1, table_.slots());  // itself too
+    const std::size_t count = std::min(neighbours_ + 1, table_.slots());  // one more: each slot finds itself
     std::vector<std::uint32_t> found(count);
     std::vector<double> squared_distances(count);
     near_.assign(table_.slots(), {});
@@ -112,7 +113,7 @@ class NeighbourMerging {
   MergeTable<D>& table_;
   std::size_t neighbours_;
   std::vector<std::vector<std::uint32_t>> near_;  // per slot, ascending, symmetric
-  std::vector<std::uint32_t> version_;            // per slot: how often it took part in a merge
+  std::vector<std::uint32_t> version_;            // per slot: number of its merges so far
   std::priority_queue<Candidate> queue_;
 };
 

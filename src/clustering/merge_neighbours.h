@@ -9,8 +9,8 @@
 
 namespace gaussmap::detail {
 
-/// Clusters on their way to one, with the merges made so far. Slots stay ordered by the smallest datum of their
-/// clusters: of two that merge, the first slot stays.
+/// The remaining clusters and the merges made so far. Slots stay ordered by the smallest input index of their clusters:
+/// of two slots that merge, the first one stays.
 template <int D>
 struct MergeHistory {
   MergeHistory(const std::vector<Gaussian<D>>& data, const std::vector<double>& areas, MergeCost cost)
@@ -20,7 +20,7 @@ struct MergeHistory {
     for (std::size_t j = 0; j < node.size(); ++j) node[j] = static_cast<std::uint32_t>(j);
   }
 
-  /// Slots a < b.
+  /// Merges slots a < b.
   void merge(std::size_t a, std::size_t b, double cost) {
     table.unite(a, b);
     dendrogram.merges.push_back({node[a], node[b], cost});
@@ -28,7 +28,7 @@ struct MergeHistory {
     node[b] = kGone;
   }
 
-  /// Closes the gaps; returns the old slots of 0, 1, ...
+  /// Removes the gaps and returns the old slots of 0, 1, ...
   std::vector<std::uint32_t> compact() {
     std::vector<std::uint32_t> kept;
     for (std::size_t slot = 0; slot < node.size(); ++slot)
@@ -41,13 +41,13 @@ struct MergeHistory {
 
   static constexpr std::uint32_t kGone = 0xFFFFFFFFu;
   MergeTable<D> table;
-  std::vector<std::uint32_t> node;  // of the dendrogram, per slot
+  std::vector<std::uint32_t> node;  // per slot: its node of the dendrogram
   Dendrogram dendrogram;
 };
 
-/// Merges down to `until` clusters, the candidates restricted to pairs of which one is among the `neighbours` nearest
-/// of the other, by their means. A union inherits the neighbours of both; they are looked for anew whenever half of the
-/// clusters are gone. Leaves the table compact.
+/// Merges until `until` clusters are left. A pair is a candidate only if one of its clusters is among the `neighbours`
+/// nearest clusters of the other, by their means. A merged cluster inherits the neighbours of both. The neighbours are
+/// searched again each time half of the clusters are gone. The table is compact afterwards.
 template <int D>
 void mergeNeighbours(MergeHistory<D>& history, std::size_t neighbours, std::size_t until);
 

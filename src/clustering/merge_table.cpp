@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compiled without contraction into fused multiply-adds: the same bits on every machine.
+// Compiled without fused multiply-adds, so results are bit-identical on every machine.
 #include "merge_table.h"
 
 #include <algorithm>
@@ -16,16 +16,17 @@
 namespace gaussmap::detail {
 namespace {
 
-// A loop over pairs becomes a vector loop only if the loops inside it are gone by then.
+// The compiler vectorises a loop over pairs only if the loops inside it are unrolled first.
 #define GAUSSMAP_UNROLL _Pragma("GCC unroll 16")
 #define GAUSSMAP_INLINE inline __attribute__((always_inline))
 
-constexpr double kLargest = 1e300;  // of a determinant, so that no cost is infinite or NaN
+constexpr double kLargest = 1e300;  // limits of a determinant; they keep costs finite
 constexpr double kSmallest = 1e-300;
 constexpr double kMaxWeight = 1e100;
 constexpr std::size_t kMaxData = 0x7FFFFFFF;
 
-/// ln x within 2 ulp for x in [1e-300, 1e300], from + - * / only: libraries' own differ from machine to machine.
+/// Returns ln x within 2 ulp for x in [1e-300, 1e300]. It uses only + - * /, because the logarithms of libraries differ
+/// from machine to machine.
 GAUSSMAP_INLINE double naturalLogarithm(double x) {
   constexpr std::uint64_t kRootHalf = 0x3FE6A09E667F3BCDull, kBias = 1023;
   std::uint64_t bits;
@@ -43,7 +44,7 @@ GAUSSMAP_INLINE double naturalLogarithm(double x) {
   return power * 0.693147180559945309417 + 2.0 * (s + s * ss * series);
 }
 
-/// det of a symmetric matrix from its upper triangle by rows.
+/// Returns the determinant of a symmetric matrix from its upper triangle by rows.
 template <int D>
 GAUSSMAP_INLINE double determinant(const double* m) {
   if constexpr (D == 2)
@@ -52,13 +53,13 @@ GAUSSMAP_INLINE double determinant(const double* m) {
     return m[0] * (m[3] * m[5] - m[4] * m[4]) - m[1] * (m[1] * m[5] - m[4] * m[2]) + m[2] * (m[1] * m[4] - m[3] * m[2]);
 }
 
-/// det S of a cluster with scatter w S; rounding and overflow kept away from the costs.
+/// Returns det S of a cluster with scatter w S, limited so that rounding and overflow do not reach the costs.
 template <int D>
 GAUSSMAP_INLINE double covarianceDeterminant(const double* scatter, double inverse_weight) {
   double det = determinant<D>(scatter);
   GAUSSMAP_UNROLL
   for (int axis = 0; axis < D; ++axis) det *= inverse_weight;
-  det = det < kLargest ? det : kLargest;  // NaN too
+  det = det < kLargest ? det : kLargest;  // replaces NaN too
   return det > kSmallest ? det : kSmallest;
 }
 
@@ -120,27 +121,28 @@ GAUSSMAP_COST_LOOP(3, Runnalls)
 #undef GAUSSMAP_COST_LOOP
 
 [[noreturn]] void refuse(std::size_t j, const std::string& what) {
-  throw std::invalid_argument("agglomerate: datum " + std::to_string(j) + " has no " + what);
+  throw std::invalid_argument("agglomerate: Gaussian " + std::to_string(j) + ": the " + what);
 }
 
 template <int D>
 void checkData(const std::vector<Gaussian<D>>& data, const std::vector<double>& areas) {
   if (areas.size() != data.size())
     throw std::invalid_argument("agglomerate: " + std::to_string(areas.size()) + " areas for " +
-                                std::to_string(data.size()) + " data");
-  if (data.size() > kMaxData) throw std::invalid_argument("agglomerate: 2^31 data or more");
+                                std::to_string(data.size()) + " Gaussians: give one area per Gaussian");
+  if (data.size() > kMaxData)
+    throw std::invalid_argument("agglomerate: 2^31 Gaussians or more: at most 2^31 - 1 are supported");
   const auto usable = [](double value) { return value > 0.0 && value < kMaxWeight; };
   for (std::size_t j = 0; j < data.size(); ++j) {
-    if (!usable(data[j].weight)) refuse(j, "usable weight");
-    if (!usable(areas[j])) refuse(j, "usable area");
-    if (!data[j].mean.allFinite()) refuse(j, "finite mean");
+    if (!usable(data[j].weight)) refuse(j, "weight must be above 0 and below 1e100");
+    if (!usable(areas[j])) refuse(j, "area must be above 0 and below 1e100");
+    if (!data[j].mean.allFinite()) refuse(j, "mean is not finite");
     if (!SmallCholesky<D>(data[j].cov).positive)
-      throw std::domain_error("agglomerate: the covariance of datum " + std::to_string(j) +
-                              " is not positive definite");
+      throw std::domain_error("agglomerate: Gaussian " + std::to_string(j) +
+                              ": the covariance is not positive definite; add a noise floor to its eigenvalues");
   }
 }
 
-/// Half-way between the extremes: the same for any order of the data.
+/// Returns the middle between the extremes of the means. It does not depend on the order of the input.
 template <int D>
 Vector<D> middleOf(const std::vector<Gaussian<D>>& data) {
   if (data.empty()) return Vector<D>::Zero();

@@ -10,37 +10,38 @@
 
 namespace gaussmap::detail {
 
-/// Where the columns of a MergeTable are.
+/// Pointers to the columns of a MergeTable.
 template <int D>
 struct MergeColumns {
   static constexpr int kScatter = D * (D + 1) / 2;
-  double* mean[D];            // about the middle of the data
+  double* mean[D];            // relative to the middle of the input
   double* scatter[kScatter];  // weight * covariance, upper triangle by rows
-  double* weight;             // of the moment match: areas, or masses
-  double* size;               // sqrt(det S), or w ln det S; -infinity in a removed slot: merging with it costs infinity
+  double* weight;             // for the moment match: areas (Volume) or weights (Runnalls)
+  double* size;               // sqrt(det S) or w ln det S; -infinity in a removed slot: merging with it costs infinity
 };
 
-/// Clusters that are merged, one a slot, as columns, so that the costs of a cluster with all others are one loop in
-/// vector registers. Every operation gives the same bits for (a, b) as for (b, a), in any number of lanes.
+/// The clusters that are being merged, one per slot, stored as columns. The costs of merging a cluster with all others
+/// are then one loop in vector registers. Every operation gives bit-identical results for (a, b) and (b, a), in any
+/// number of lanes.
 template <int D>
 class MergeTable {
  public:
-  /// Throws as agglomerate() says. `data` are not needed any longer afterwards.
+  /// Throws like agglomerate(). `data` is not needed afterwards.
   MergeTable(const std::vector<Gaussian<D>>& data, const std::vector<double>& areas, MergeCost cost);
   MergeTable(const MergeTable&) = delete;  // columns_ points into values_
   MergeTable& operator=(const MergeTable&) = delete;
 
   std::size_t slots() const { return slots_; }
-  /// Costs of merging slot i with slots [first, last), to out[0 ... last - first). Never NaN.
+  /// Writes the costs of merging slot i with slots [first, last) to out[0 ... last - first). A cost is never NaN.
   void costs(std::size_t i, std::size_t first, std::size_t last, double* out) const;
   double cost(std::size_t i, std::size_t j) const {
     double cost = 0.0;
     costs(i, j, j + 1, &cost);
     return cost;
   }
-  /// Slot a becomes the union of a and b, slot b is removed.
+  /// Replaces slot a by the union of a and b, and removes slot b.
   void unite(std::size_t a, std::size_t b);
-  /// Slots `kept` (ascending) move to 0, 1, ...; all others are gone.
+  /// Moves slots `kept` (ascending) to 0, 1, ... and removes all others.
   void keep(const std::vector<std::uint32_t>& kept);
   double mean(std::size_t slot, int axis) const { return columns_.mean[axis][slot]; }
 
@@ -51,7 +52,7 @@ class MergeTable {
   MergeColumns<D> columns_;
 };
 
-/// Index of the smallest of `size` > 0 values, the first of several. No NaN.
+/// Returns the index of the smallest of `size` > 0 values; the first one if several are equal. No value may be NaN.
 std::size_t firstMinimum(const double* values, std::size_t size);
 
 }  // namespace gaussmap::detail

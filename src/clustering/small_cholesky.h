@@ -7,15 +7,15 @@
 
 namespace gaussmap::detail {
 
-/// Cholesky factorisation of one small covariance, unrolled by the compiler: k-means factorises a matrix per datum
-/// and reference, and Eigen's solvers spend most of such a call on deciding how to do it.
+/// Cholesky factorisation of one small covariance, unrolled by the compiler. K-means factorises one matrix per input
+/// Gaussian and per cluster centre. Eigen's solvers spend most of such a call on choosing their method.
 template <int D>
 struct SmallCholesky {
   Matrix<D> whitening = Matrix<D>::Zero();  ///< L^-1, lower triangle: |L^-1 (x - mu)| is the Mahalanobis distance
   double root_determinant = 1.0;            ///< sqrt det Sigma
-  bool positive = true;                     ///< false: not positive definite, or not finite; the rest is void
+  bool positive = true;                     ///< false: not positive definite or not finite; other members are invalid
 
-  /// Reads the lower triangle.
+  /// Factorises `cov`, of which only the lower triangle is read.
   explicit SmallCholesky(const Matrix<D>& cov) {
     Matrix<D> factor;
     for (int j = 0; j < D; ++j) {

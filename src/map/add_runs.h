@@ -9,21 +9,21 @@
 
 namespace gaussmap::detail {
 
-/// The points of a block, cut into runs of one cell each.
+/// The points of a block, cut into runs. All points of a run lie in the same cell.
 template <int D>
 struct Runs {
-  const std::int32_t (*offset)[PointBlock<D>::kCapacity];  ///< D arrays, from the centre of the point's cell [steps]
+  const std::int32_t (*offset)[PointBlock<D>::kCapacity];  ///< D arrays: offset from the centre of the cell [steps]
   const std::uint32_t* starts;                             ///< first point of each run, and the end of the last
   std::size_t count;
-  CellMoments<D>* const* cells;  ///< of each run; runs may share a cell
+  CellMoments<D>* const* cells;  ///< the cell of each run; runs can share a cell
 };
 
-/// Adds every point to the moments of its run's cell. The innermost loop of map building: on processors with AVX2
-/// the ten sums of a cell take three additions.
+/// Adds every point to the moments of its cell. This is the innermost loop of map building. On processors with AVX2,
+/// three vector additions update the ten sums of a cell.
 void addRuns(const Runs<2>& runs);
 void addRuns(const Runs<3>& runs);
 
-/// The same in plain C++, for every other processor and for the tests.
+/// Does the same as addRuns() in plain C++, for all other processors and for the tests.
 template <int D>
 void addRunsPlainly(const Runs<D>& runs) {
   for (std::size_t run = 0; run < runs.count; ++run)

@@ -10,8 +10,9 @@
 
 namespace gaussmap::detail {
 
-/// MapScale::first_child of the cells of scale s: which cells of scale s - 1 lie under each of them, possibly none.
-/// Both in key order. Throws std::invalid_argument that names a parent which is missing.
+/// Returns MapScale::first_child for the cells of scale s: the child cells of each cell, in scale s - 1. A cell can
+/// have no children. Both lists must be in key order. Throws std::invalid_argument if the parent of a cell is missing;
+/// the message names the missing cell.
 template <int D>
 std::vector<std::uint32_t> childLinks(const std::vector<CellKey<D>>& finer, const std::vector<CellKey<D>>& coarse,
                                       const Grid<D>& grid, int s) {

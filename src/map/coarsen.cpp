@@ -41,7 +41,8 @@ template <int D>
 MapScale<D> coarsen(MapScale<D>& finer, const Grid<D>& grid, int finer_scale) {
   const std::size_t finer_cells = finer.keys.size();
   if (finer.gaussianCount() >= std::numeric_limits<std::uint32_t>::max())
-    throw std::length_error("coarsen: scale " + std::to_string(finer_scale) + " has 2^32 Gaussians or more");
+    throw std::length_error("coarsen: scale " + std::to_string(finer_scale) +
+                            " has 2^32 - 1 Gaussians or more: use coarser cells");
   MapScaleBuilder<D> coarser;
   finer.parent.resize(finer.gaussianCount());
   std::vector<Gaussian<D>> children;

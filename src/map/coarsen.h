@@ -9,25 +9,26 @@
 
 namespace gaussmap::detail {
 
-/// Gaussian `index` of a scale, its mean about the centre of its cell [m]: stored, or made from the moments
-/// (finest scale). Its weight is the number of its points.
+/// Returns Gaussian `index` of a scale, with its mean relative to the centre of its cell [m]. If the scale stores
+/// moments (finest scale only), the Gaussian is computed from them. Its weight is the number of its points.
 template <int D>
 Gaussian<D> localGaussian(const MapScale<D>& cells, const Grid<D>& grid, int scale, std::size_t index);
 
-/// The Gaussians that cell `cell` of a scale holds.
+/// Returns the range of the Gaussians of cell `cell`.
 template <int D>
 GAUSSMAP_API IndexRange gaussiansOf(const MapScale<D>& cells, std::size_t cell);
 
-/// All Gaussians of some cells with one common parent, means about the parent's centre [m] (the shift is exact
-/// wherever the cells are): G(phi(c)) of Yguel 2009, sec. 5.1. Replaces the contents of `out`, keeps its memory.
+/// Gathers all Gaussians of cells that have one common parent: G(phi(c)) of Yguel 2009, sec. 5.1. The means are
+/// relative to the centre of the parent [m]; this shift is exact, also far from the origin. The function replaces the
+/// contents of `out` but keeps its memory.
 template <int D>
 void gatherUnder(const MapScale<D>& finer, const Grid<D>& grid, int finer_scale, IndexRange cells,
                  std::vector<Gaussian<D>>& out);
 
-/// The next coarser scale with one Gaussian per cell: the moment match (Yguel 2009, eqs. (9), (10)) of all finer
-/// Gaussians under the cell, summed in their order, so that it depends on nothing but them. Sets keys, first_child,
-/// gaussians, and finer.parent. The cells of `finer` stand in key order and stay as they are.
-/// Throws std::length_error at 2^32 finer cells or Gaussians and beyond.
+/// Returns the next coarser scale with one Gaussian per cell: the moment match (Yguel 2009, eqs. (9), (10)) of all
+/// finer Gaussians below the cell. They are summed in their order, so the result depends only on them. Sets keys,
+/// first_child and gaussians of the result, and finer.parent. The cells of `finer` must be in key order; they do not
+/// change. Throws std::length_error if `finer` has 2^32 - 1 Gaussians or more.
 template <int D>
 GAUSSMAP_API MapScale<D> coarsen(MapScale<D>& finer, const Grid<D>& grid, int finer_scale);
 

@@ -14,7 +14,8 @@ using namespace detail;
 
 namespace {
 
-/// One array an axis. Strides that compilers know of let them load and turn several points at once.
+/// Copies the points into one array per axis. If the compiler knows the stride, it can load and transpose several
+/// points at once.
 template <std::size_t kStride>
 inline void spread(const float* points, std::size_t stride, PointBlock<3>& block) {
   if (kStride > 0) stride = kStride;

@@ -10,13 +10,13 @@ namespace gaussmap {
 namespace {
 
 constexpr std::size_t kMaxEntries = 0xFFFFFFFFu;  // indices of cells and Gaussians have 32 bits
-constexpr double kMaxOffset = 0.501;              // of a mean from the cell's centre, in sides: half, and some rounding
+constexpr double kMaxOffset = 0.501;              // of a mean from the cell's centre, in sides: a half plus rounding
 
 [[noreturn]] void refuse(int scale, const std::string& what) {
   throw std::invalid_argument("scale " + std::to_string(scale) + ": " + what);
 }
 
-/// Do `starts` cut `total` entries into `parts` ranges, one after the other?
+/// Returns true if `starts` divides `total` entries into `parts` consecutive ranges.
 bool cutsIntoRanges(const std::vector<std::uint32_t>& starts, std::size_t parts, std::size_t total) {
   return starts.size() == parts + 1 && starts.front() == 0 && starts.back() == total &&
          std::is_sorted(starts.begin(), starts.end());
@@ -34,11 +34,11 @@ void checkScale(const MapScale<D>& scale, int s, double side) {
     if (s > 0) refuse(s, "only the finest scale holds moments");
     if (!scale.gaussians.empty() || scale.moments.size() != cells) refuse(s, "moments do not match the cells");
     for (const CellMoments<D>& moments : scale.moments)
-      if (moments.count <= 0) refuse(s, "a cell without points");
+      if (moments.count <= 0) refuse(s, "a cell has no points");
   }
   for (const Gaussian<D>& gaussian : scale.gaussians) {
     if (!(gaussian.weight > 0.0 && std::isfinite(gaussian.weight)) || !gaussian.cov.allFinite())
-      refuse(s, "a Gaussian without weight or covariance");
+      refuse(s, "a Gaussian's weight is not positive and finite, or its covariance is not finite");
     if (!gaussian.mean.allFinite() || gaussian.mean.cwiseAbs().maxCoeff() > kMaxOffset * side)
       refuse(s, "a Gaussian's mean lies outside its cell");
   }
@@ -49,7 +49,7 @@ void checkScale(const MapScale<D>& scale, int s, double side) {
   if (!scale.log_odds.empty() && scale.log_odds.size() != scale.gaussianCount())
     refuse(s, "occupancies do not match the Gaussians");
   for (const float log_odds : scale.log_odds)
-    if (!std::isfinite(log_odds)) refuse(s, "an occupancy that is not finite");
+    if (!std::isfinite(log_odds)) refuse(s, "an occupancy is not finite");
 }
 
 template <int D>
@@ -61,7 +61,7 @@ double weightOf(const MapScale<D>& scale) {
   return sum;
 }
 
-/// Children in the right cells and in key order, clusters linked to clusters of the cell above.
+/// Checks that children are in the right cells and in key order, and that every parent is a cluster of the cell above.
 template <int D>
 void checkLinks(const GaussianMap<D>& map, int s) {
   const MapScale<D>&finer = map.scale(s - 1), &coarse = map.scale(s);
@@ -72,14 +72,14 @@ void checkLinks(const GaussianMap<D>& map, int s) {
     const IndexRange children = map.childCells(cell, s), clusters = map.gaussiansOf(cell, s);
     for (std::size_t child = children.first; child < children.last; ++child) {
       if (!map.grid().isParent(coarse.keys[cell], finer.keys[child]))
-        refuse(s - 1, "cell " + toString<D>(finer.keys[child]) + " stands under the wrong parent");
+        refuse(s - 1, "cell " + toString<D>(finer.keys[child]) + " is a child of the wrong cell");
       if (child > children.first && !(finer.keys[child - 1] < finer.keys[child]))
-        refuse(s - 1, "cell " + toString<D>(finer.keys[child]) + " is out of order or there twice");
+        refuse(s - 1, "cell " + toString<D>(finer.keys[child]) + " is out of order or a duplicate");
     }
     const IndexRange under = map.gaussiansUnder(cell, s);
     for (std::size_t i = under.first; i < under.last; ++i)
       if (finer.parent[i] < clusters.first || finer.parent[i] >= clusters.last)
-        refuse(s - 1, "a Gaussian whose parent lies in another cell");
+        refuse(s - 1, "the parent of a Gaussian is in the wrong cell");
   }
 }
 
@@ -89,18 +89,18 @@ template <int D>
 GaussianMap<D>::GaussianMap(const MapOptions& options, std::vector<MapScale<D>> scales)
     : grid_(options), scales_(std::move(scales)) {
   if (scales_.size() != static_cast<std::size_t>(grid_.scales()))
-    throw std::invalid_argument(std::to_string(scales_.size()) + " scales given, the options ask for " +
+    throw std::invalid_argument(std::to_string(scales_.size()) + " scales given, but the options have " +
                                 std::to_string(grid_.scales()));
   for (int s = 0; s < grid_.scales(); ++s) checkScale<D>(scale(s), s, grid_.side(s));
   for (int s = 1; s < grid_.scales(); ++s) checkLinks<D>(*this, s);
   const std::vector<CellKey<D>>& coarsest = scales_.back().keys;
   if (std::adjacent_find(coarsest.begin(), coarsest.end(), [](auto& a, auto& b) { return !(a < b); }) != coarsest.end())
-    refuse(grid_.scales() - 1, "cells out of order or there twice");
+    refuse(grid_.scales() - 1, "cells are out of order or duplicated");
   for (const MapScale<D>& level : scales_) {
     weights_.push_back(weightOf<D>(level));
     compressed_ |= hasEmptyRange(level.first_child);
     if (level.gaussianCount() > 0 && level.log_odds.empty() == hasOccupancy())
-      throw std::invalid_argument("some scales know of occupancy and some do not");
+      throw std::invalid_argument("some scales have occupancy and some do not");
   }
 }
 

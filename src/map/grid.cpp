@@ -14,8 +14,8 @@ using namespace detail;
 
 namespace {
 
-// Beyond this a covariance of the coarsest scale would not fit into doubles beside its noise floor
-// (condition number 1e14).
+// Limit of the coarsest side divided by the noise floor. Beyond it, the condition number of a covariance of the
+// coarsest scale can exceed 1e14, too much for doubles.
 constexpr double kMaxSidesPerNoise = 1e7;
 constexpr std::int64_t kMaxCellsAlongSide = std::int64_t{1} << 30;
 
@@ -78,7 +78,7 @@ template <int D>
 Vector<D> Grid<D>::centre(const CellKey<D>& key, int scale) const {
   Vector<D> centre;
   for (int axis = 0; axis < D; ++axis) {
-    // Counted in half finest cells, an integer: the same rounding as for the finest cells around it.
+    // Counts in half finest cells, an integer. The rounding is then the same as for the finest cells around it.
     const std::int64_t halves = (2 * std::int64_t{key[static_cast<std::size_t>(axis)]} + 1) * cellsAlongSide(scale);
     centre(axis) = 0.5 * static_cast<double>(halves) * options_.resolution;
   }

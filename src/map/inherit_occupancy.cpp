@@ -24,8 +24,9 @@ void inheritOccupancy(const MapScale<D>& finer, MapScale<D>& coarse) {
 template <int D>
 GaussianMap<D> withOccupancy(const GaussianMap<D>& map, const std::vector<float>& log_odds) {
   if (log_odds.size() != map.gaussianCount(0))
-    throw std::invalid_argument(std::to_string(log_odds.size()) + " occupancies for the " +
-                                std::to_string(map.gaussianCount(0)) + " Gaussians of the finest scale");
+    throw std::invalid_argument(std::to_string(log_odds.size()) + " occupancies given for " +
+                                std::to_string(map.gaussianCount(0)) +
+                                " Gaussians of the finest scale: one per Gaussian is needed");
   std::vector<MapScale<D>> scales;
   scales.reserve(std::size_t(map.scales()));
   for (int s = 0; s < map.scales(); ++s) scales.push_back(map.scale(s));

@@ -7,14 +7,15 @@
 
 namespace gaussmap::detail {
 
-/// A coarse Gaussian is as occupied as what is most so under it: it goes when all of it has gone (Yguel 2009, sec.
-/// 5.3). Sets the log-odds of `coarse` from those of the next finer scale; does nothing if that one has none.
+/// Sets the log-odds of `coarse` from those of the next finer scale (Yguel 2009, sec. 5.3). The log-odds of a coarse
+/// Gaussian are the maximum over its children, so it is removed only when all children are. A Gaussian without children
+/// keeps its log-odds, or gets kMaxOccupancy if `coarse` has none. Does nothing if the finer scale has no log-odds.
 template <int D>
 void inheritOccupancy(const MapScale<D>& finer, MapScale<D>& coarse);
 
-/// The map with these log-odds at its finest scale (one per Gaussian) and what follows from them above. A coarse
-/// Gaussian with nothing under it keeps what the map said of it.
-/// Throws std::invalid_argument unless there is a finite one for every Gaussian of the finest scale.
+/// Returns the map with these log-odds at its finest scale (one per Gaussian). The log-odds of the coarser scales
+/// follow from them. A coarse Gaussian without children keeps its log-odds. Throws std::invalid_argument unless there
+/// is one finite value per Gaussian of the finest scale.
 template <int D>
 GaussianMap<D> withOccupancy(const GaussianMap<D>& map, const std::vector<float>& log_odds);
 

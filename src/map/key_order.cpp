@@ -14,21 +14,23 @@ using namespace detail;
 
 namespace {
 
-/// Codes of up to 103 bits: per axis at most 2^32 coordinates and as many again for the rounding to whole ancestors.
+/// Codes of up to 103 bits. Per axis there are at most 2^32 coordinates, and as many again for the rounding to whole
+/// ancestors.
 __extension__ typedef unsigned __int128 LongCode;
 
 struct Extent {
   std::int64_t lowest = 0;
-  std::uint64_t count = 1;  // of ancestors at the coarsest scale along this axis
+  std::uint64_t count = 1;  // number of ancestors at the coarsest scale along this axis
 };
 
 struct Levels {
   std::uint64_t ratio = 2;
-  int count = 0;           // of scales above the finest
-  std::uint64_t span = 1;  // cells along the side of one of the coarsest scale
+  int count = 0;           // number of coarser scales
+  std::uint64_t span = 1;  // cells along the side of a cell of the coarsest scale
 };
 
-/// What one coordinate, counted from its axis' lowest ancestor, adds to the number of a cell.
+/// Returns what one coordinate adds to the code of a cell. The coordinate is counted from the lowest ancestor on its
+/// axis.
 template <int D, typename Code>
 Code axisCode(std::size_t axis, std::uint64_t coordinate, const std::array<Extent, D>& extents, const Levels& levels) {
   Code code = 0;
@@ -42,9 +44,10 @@ Code axisCode(std::size_t axis, std::uint64_t coordinate, const std::array<Exten
   return code;
 }
 
-/// One number a cell whose order is key order: the coarsest ancestor counted x, y, z, then at each finer scale the
-/// place among its parent's children, counted the same way. What an axis adds comes from a table where that is shorter
-/// than the divisions of all cells.
+/// Returns one code per cell. The order of the codes is the key order. A code starts with the position of the coarsest
+/// ancestor, counted by x, then y, then z. For each finer scale it continues with the position among the children of
+/// the parent, counted in the same way. The contribution of an axis comes from a table if the table is shorter than the
+/// list of cells; this saves the divisions.
 template <int D, typename Code>
 std::vector<Code> orderCodes(const std::vector<CellKey<D>>& keys, const std::array<Extent, D>& extents,
                              const Levels& levels) {
@@ -64,7 +67,7 @@ std::vector<Code> orderCodes(const std::vector<CellKey<D>>& keys, const std::arr
   return codes;
 }
 
-/// Least-significant-digit radix sort of (code, index), 11 bits a pass.
+/// Sorts (code, index) with a least-significant-digit radix sort, 11 bits per pass. Returns the indices.
 std::vector<std::uint32_t> sortedByRadix(const std::vector<std::uint64_t>& codes, int bits) {
   struct Item {
     std::uint64_t code;

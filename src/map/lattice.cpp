@@ -12,7 +12,7 @@ void throwOutsideLattice(const double* point, int dimension, double resolution) 
   text << "point (";
   for (int axis = 0; axis < dimension; ++axis) text << (axis ? ", " : "") << point[axis];
   text << ") does not fit 32-bit cell indices at a resolution of " << resolution
-       << " m: take coarser cells, or check the units and the pose";
+       << " m: use coarser cells, or check the units and the pose";
   throw std::out_of_range(text.str());
 }
 

@@ -32,20 +32,21 @@ class MapScaleBuilder {
     startCell();
     scale_.keys.push_back(key);
   }
-  /// The exact moments of the current cell: its only Gaussian.
+  /// Adds the exact moments of the current cell, which are its only Gaussian.
   void addMoments(const CellMoments<D>& moments) {
     scale_.moments.push_back(moments);
     ++gaussians_;
   }
-  /// One Gaussian of the current cell, its mean about the centre of the cell.
+  /// Adds a Gaussian to the current cell. Its mean is relative to the centre of the cell.
   void addGaussian(const Gaussian<D>& gaussian) {
     scale_.gaussians.push_back(gaussian);
     ++gaussians_;
   }
-  /// Columns beside the Gaussians: call them for every Gaussian or for none.
+  /// Add to the optional columns. Call each of them for every Gaussian or never.
   void addLogOdds(float log_odds) { scale_.log_odds.push_back(log_odds); }
   void addParent(std::size_t parent) { scale_.parent.push_back(static_cast<std::uint32_t>(parent)); }
-  /// Coarse scales: the first child of the current cell. The end of the last cell's children is given to take().
+  /// Coarse scales: adds the index of the first child of the current cell. take() gets the end of the last cell's
+  /// children.
   void addFirstChild(std::size_t child) { scale_.first_child.push_back(static_cast<std::uint32_t>(child)); }
 
   /// Copies Gaussian `index` of another scale into the current cell: its moments or Gaussian, and its log-odds.
@@ -65,23 +66,23 @@ class MapScaleBuilder {
 
   std::size_t cells() const { return scale_.keys.size(); }
   std::size_t gaussians() const { return gaussians_; }
-  /// The key of the current cell; there is one.
+  /// Returns the key of the current cell. addCell() must have been called.
   const CellKey<D>& key() const { return scale_.keys.back(); }
 
-  /// The finished scale. The builder is empty afterwards.
+  /// Returns the finished scale. The builder is empty afterwards.
   MapScale<D> take() {
     startCell();
     gaussians_ = 0;
     return std::exchange(scale_, {});
   }
-  /// The same for a coarse scale; `children` = number of cells of the finer scale.
+  /// Returns a finished coarse scale; `children` is the number of cells of the finer scale.
   MapScale<D> take(std::size_t children) {
     addFirstChild(children);
     return take();
   }
 
  private:
-  /// Notes where a cell starts, once there is a cell that does not hold exactly one Gaussian.
+  /// Stores where a cell starts, as soon as some cell does not hold exactly one Gaussian.
   void startCell() {
     std::vector<std::uint32_t>& starts = scale_.first_gaussian;
     if (starts.empty()) {

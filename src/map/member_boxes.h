@@ -8,10 +8,11 @@
 
 namespace gaussmap::detail {
 
-/// For every Gaussian of a scale the box of the finest cells that it stands for [m, map frame]: no point behind it
-/// lies outside. Follows the links, so it costs the file nothing. A Gaussian's tails reach past its object, this box
-/// does not reach further than a finest cell. Finest scale: the cells themselves. A Gaussian to which no finer one is
-/// linked (its detail was deleted, or links were guessed by loadPcd()) has its cell, here and for coarser scales.
+/// Returns one box per Gaussian of a scale [m, map frame]: the bounds of the finest cells that the Gaussian represents.
+/// No point of the Gaussian lies outside its box. The boxes follow from the links, so a map file does not store them.
+/// The tails of a Gaussian reach beyond its object; the box reaches at most one finest cell beyond it. At the finest
+/// scale the boxes are the cells. A Gaussian without children (its detail was deleted, or loadPcd() guessed the links)
+/// has its cell as box, and the boxes of the coarser scales contain this cell.
 template <int D>
 std::vector<Box<D>> memberBoxes(const GaussianMap<D>& map, int scale);
 

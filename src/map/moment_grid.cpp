@@ -22,14 +22,15 @@ namespace {
 constexpr std::size_t kBlock = PointBlock<3>::kCapacity;
 constexpr std::size_t kFirstSlots = 1024;
 
-/// Fuller, probes get long and their ends hard to predict. A table that stays in the second-level cache can do with
-/// more room than one where a page or a cache line more costs time as well.
+/// Returns true if the hash table needs more slots. The maximum load is 1/4 while the table fits in the second-level
+/// cache and 5/8 above. In fuller tables, probes become long and their ends hard to predict. In large tables, an
+/// additional page or cache line costs time as well.
 bool isFull(std::size_t cells, std::size_t slots) {
   constexpr std::size_t kRoomySlots = std::size_t{1} << 17;
   return slots <= kRoomySlots ? cells * 4 >= slots : cells * 8 >= slots * 5;
 }
 
-/// One axis of a block on the lattice. Returns 0 if every coordinate fits.
+/// Rounds one axis of a block to the lattice. Returns 0 if every coordinate fits.
 GAUSSMAP_CLONES std::uint64_t snapAxis(const double* coordinates, std::size_t size, double steps_per_metre,
                                        std::int32_t* cell, std::int32_t* offset) {
   alignas(64) double shifted[kBlock];
@@ -46,7 +47,7 @@ GAUSSMAP_CLONES std::uint64_t snapAxis(const double* coordinates, std::size_t si
   return misfits;
 }
 
-/// One step of the hash of a key, 32 bits so that it runs in vector registers.
+/// One step of the hash of a key. The hash has 32 bits, so it can be computed in vector registers.
 inline std::uint32_t mix(std::uint32_t hash, std::int32_t coordinate) {
   hash = (hash ^ static_cast<std::uint32_t>(coordinate)) * 0x9E3779B1u;
   return hash ^ (hash >> 15);
@@ -70,7 +71,7 @@ GAUSSMAP_CLONES void finishAll(std::size_t size, std::uint32_t* hash) {
   for (std::size_t i = 0; i < size; ++i) hash[i] = finish(hash[i]);
 }
 
-/// 1 where another cell than that of the point before begins, else 0.
+/// Sets begins[i] to 1 if point i lies in another cell than point i - 1, else to 0. begins[0] is 1.
 template <int D>
 GAUSSMAP_CLONES void findBegins(const std::int32_t (*cell)[kBlock], std::size_t size, std::uint32_t* begins) {
   begins[0] = 1;
@@ -81,16 +82,16 @@ GAUSSMAP_CLONES void findBegins(const std::int32_t (*cell)[kBlock], std::size_t 
   }
 }
 
-/// A block on the lattice: what is left of the points is integers.
+/// The points of a block, rounded to the lattice: integers only.
 template <int D>
 struct LatticeBlock {
   std::size_t size = 0;
   alignas(64) std::int32_t cell[D][kBlock];
   alignas(64) std::int32_t offset[D][kBlock];  // from the cell's centre [steps]
   alignas(64) std::uint32_t hash[kBlock];
-  alignas(64) std::uint32_t begins[kBlock];  // 1 where another cell than that of the point before begins
+  alignas(64) std::uint32_t begins[kBlock];  // 1 if the point before lies in another cell, else 0
 
-  /// True if every point was finite and in range.
+  /// Rounds a block to the lattice. Returns true if every point is finite and in range.
   bool snap(const PointBlock<D>& block, double resolution) {
     size = block.size;
     const double steps_per_metre = stepsPerMetre(resolution);
@@ -112,7 +113,7 @@ struct LatticeBlock {
   }
 };
 
-/// The == of std::array calls memcmp.
+/// Compares two keys without the call of memcmp() that operator== of std::array makes.
 template <int D>
 bool same(const CellKey<D>& a, const CellKey<D>& b) {
   std::int32_t difference = 0;
@@ -120,7 +121,7 @@ bool same(const CellKey<D>& a, const CellKey<D>& b) {
   return difference == 0;
 }
 
-/// The finite points of a block.
+/// Returns the finite points of a block.
 template <int D>
 PointBlock<D> finitePart(const PointBlock<D>& block) {
   PointBlock<D> finite;
@@ -148,7 +149,7 @@ template <int D>
   throwOutsideLattice(point, D, resolution);
 }
 
-/// Throws std::length_error if a cell that the block falls to would hold too many points.
+/// Throws std::length_error if the block would give a cell too many points.
 template <int D>
 void requireRoom(const MomentGrid<D>& grid, const LatticeBlock<D>& block, const std::uint32_t* starts,
                  std::size_t runs) {
@@ -180,11 +181,11 @@ std::size_t MomentGrid<D>::add(const PointBlock<D>& block) {
     return add(finite);
   }
 
-  // Points of a scan come in runs of the same cell: each run costs one look-up. The look-ups of a block are made
-  // in three passes, so that the memory they need is on its way while the passes before it work.
+  // Consecutive points of a scan often lie in the same cell. Such a run needs one look-up. The look-ups of a block take
+  // three passes. Each pass prefetches the memory that the next pass needs.
   std::uint32_t starts[kBlock + 1];
   std::size_t runs = 0;
-  const std::size_t mask = slot_count_ - 1;  // a table that grows below leaves stale hints, no wrong ones
+  const std::size_t mask = slot_count_ - 1;  // if the table grows below, candidates are outdated but not wrong
   for (std::size_t i = 0; i < lattice.size; ++i) {
     __builtin_prefetch(&slots_[lattice.hash[i] & mask]);
     starts[runs] = static_cast<std::uint32_t>(i);
@@ -249,13 +250,14 @@ template <int D>
 void MomentGrid<D>::merge(const MomentGrid& other, int threads) {
   if (other.resolution_ != resolution_) {
     std::ostringstream text;
-    text << "cells of " << resolution_ << " m and of " << other.resolution_ << " m cannot be added exactly";
+    text << "cells of " << resolution_ << " m and of " << other.resolution_
+         << " m cannot be added: both grids need the same resolution";
     throw std::invalid_argument(text.str());
   }
-  // No two cells of the other grid are the same: threads add to different ones of ours, and none is entered meanwhile.
-  // As in add(block), what the look-ups of a batch need is on its way before they are made.
+  // The cells of the other grid differ, so the threads add to different cells of this grid. No cell is inserted
+  // meanwhile. As in add(block), the memory is prefetched before the look-ups of a batch need it.
   constexpr std::size_t kBatch = 64;
-  std::vector<std::uint64_t> unknown((other.size() + kBatch - 1) / kBatch);  // a bit a cell
+  std::vector<std::uint64_t> unknown((other.size() + kBatch - 1) / kBatch);  // one bit per cell
   parallelFor(unknown.size(), threads, 64, [&](std::size_t batch) {
     const std::size_t first = batch * kBatch, count = std::min(kBatch, other.size() - first), mask = slot_count_ - 1;
     std::uint32_t hash[kBatch];
@@ -275,7 +277,7 @@ void MomentGrid<D>::merge(const MomentGrid& other, int threads) {
         unknown[batch] |= std::uint64_t{1} << i;
     }
   });
-  std::vector<std::size_t> places(unknown.size());  // of a batch's first cell that is new
+  std::vector<std::size_t> places(unknown.size());  // per batch: index of its first new cell
   std::size_t total = size_;
   for (std::size_t batch = 0; batch < unknown.size(); ++batch) {
     places[batch] = total;
@@ -319,7 +321,7 @@ void MomentGrid<D>::enter(std::uint32_t hash) {
 
 template <int D>
 void MomentGrid<D>::reserve(std::size_t cells) {
-  if (cells > kEmpty) throw std::length_error("more than 2^32 - 1 occupied cells: take coarser cells");
+  if (cells > kEmpty) throw std::length_error("more than 2^32 - 1 occupied cells: use coarser cells");
   while (chunks_.size() * kChunk < cells)
     chunks_.emplace_back(static_cast<Cell*>(allocatePages(kChunk * sizeof(Cell))));
   std::size_t slot_count = std::max(slot_count_, kFirstSlots);

@@ -9,16 +9,16 @@
 
 namespace gaussmap::detail {
 
-/// So far cells are looked for, at most [cells]. It takes the cube of it.
+/// Maximum distance of a search for cells [cells]. The time of a search grows with the cube of the distance.
 constexpr double kMaxCells = 1000.0;
 
-/// How many cells a distance [m] is, at least one. The distance is at most kMaxCells cells.
+/// Returns a distance [m] in cells, rounded, at least 1. The distance must be at most kMaxCells cells.
 inline std::int32_t cellsFor(double distance, double resolution) {
   return static_cast<std::int32_t>(std::fmax(1.0, std::round(distance / resolution)));
 }
 
-/// Calls body(key) for the 3^N keys that differ from `key` by at most one cell on every axis, `key` itself among them.
-/// The first axis varies fastest. Keys beyond 32 bits are left out.
+/// Calls body(key) for the 3^N keys that differ from `key` by at most one cell on every axis, including `key`. The
+/// first axis varies fastest. Keys beyond 32 bits are skipped.
 template <std::size_t N, typename Body>
 void forKeysAround(const std::array<std::int32_t, N>& key, const Body& body) {
   std::array<std::int32_t, N> near = key;
@@ -34,15 +34,15 @@ void forKeysAround(const std::array<std::int32_t, N>& key, const Body& body) {
   step(step, N - 1);
 }
 
-/// Calls body(key) for the keys that differ from `key` by `from` to `to` cells on the axis on which they differ most;
-/// 1 <= from <= to. Keys beyond 32 bits are left out.
+/// Calls body(key) for all keys at a distance of `from` to `to` cells from `key`; 1 <= from <= to. The distance is the
+/// largest difference on an axis. Keys beyond 32 bits are skipped.
 template <std::size_t N, typename Body>
 void forNearKeys(const std::array<std::int32_t, N>& key, std::int32_t from, std::int32_t to, const Body& body) {
   std::array<std::int32_t, N> near = key;
   const auto step = [&](const auto& self, std::size_t axis, bool inside) -> void {
     for (std::int32_t by = -to; by <= to; ++by) {
       const bool still_inside = inside && std::abs(by) < from;
-      if (axis + 1 == N && still_inside) by = from;  // over what is too near
+      if (axis + 1 == N && still_inside) by = from;  // skips the keys that are too near
       if (__builtin_add_overflow(key[axis], by, &near[axis])) continue;
       if (axis + 1 == N)
         body(near);

@@ -9,7 +9,8 @@
 
 namespace gaussmap::detail {
 
-/// Occupied finest cells under each Gaussian of the finest scale: Gaussians that share a cell share it evenly.
+/// Returns the number of occupied finest cells per Gaussian of the finest scale. Gaussians in the same cell get equal
+/// shares of it.
 template <int D>
 std::vector<double> finestAreas(const MapScale<D>& finest) {
   std::vector<double> areas;
@@ -21,7 +22,8 @@ std::vector<double> finestAreas(const MapScale<D>& finest) {
   return areas;
 }
 
-/// The same for `count` Gaussians of the coarser scale, through the links; 0 where nothing is linked.
+/// Returns the number of occupied finest cells for `count` Gaussians of the coarser scale: the sums over their
+/// children. It is 0 for a Gaussian without children.
 template <int D>
 std::vector<double> coarserAreas(const MapScale<D>& finer, const std::vector<double>& finer_areas, std::size_t count) {
   std::vector<double> areas(count, 0.0);
@@ -29,8 +31,8 @@ std::vector<double> coarserAreas(const MapScale<D>& finer, const std::vector<dou
   return areas;
 }
 
-/// The same for the Gaussians of scale s >= 1; where a compressed map has nothing finer, a surface straight through the
-/// cell, shared evenly.
+/// Returns the number of occupied finest cells per Gaussian of scale s >= 1. A leaf of a compressed map has no finer
+/// cells. It counts as a surface straight through the cell, and its Gaussians get equal shares of it.
 template <int D>
 std::vector<double> areasOf(const MapScale<D>& scale, const Grid<D>& grid, int s, const MapScale<D>& finer,
                             const std::vector<double>& finer_areas) {

@@ -15,7 +15,7 @@ using namespace detail;
 
 namespace {
 
-/// Calls visit(index) for every Gaussian of a scale that stands in a leaf.
+/// Calls visit(index) for every Gaussian of a scale in the leaves.
 template <int D, typename Visit>
 void forEachLeaf(const GaussianMap<D>& map, int scale, const Visit& visit) {
   for (std::size_t cell = 0; cell < map.cellCount(scale); ++cell) {
@@ -43,14 +43,14 @@ void forEachNeighbour(const GaussianMap<D>& map, const CellKey<D>& centre, int s
   });
 }
 
-/// Distance from a point to the box of a cell [m], 0 inside.
+/// Returns the distance from a point to the box of a cell [m]; 0 inside.
 template <int D>
 double distanceToCell(const GaussianMap<D>& map, const Vector<D>& point, std::size_t cell, int scale) {
   const Vector<D> offset = point - map.grid().centre(map.scale(scale).keys[cell], scale);
   return (offset.cwiseAbs().array() - 0.5 * map.grid().side(scale)).max(0.0).matrix().norm();
 }
 
-/// Gaussians of the cell nearest in the sense of the mean, if nearer than what is known.
+/// Updates `best` if the mean of a Gaussian of the cell is nearer to the point. Ties go to the smaller index.
 template <int D>
 void improve(const GaussianMap<D>& map, const Vector<D>& point, std::size_t cell, int scale, NearestGaussian<D>& best) {
   const Vector<D> local = point - map.grid().centre(map.scale(scale).keys[cell], scale);
@@ -61,7 +61,7 @@ void improve(const GaussianMap<D>& map, const Vector<D>& point, std::size_t cell
   }
 }
 
-/// ln(weight * density) at a point of the Gaussians of a cell.
+/// Appends ln(weight * density at the point) for each Gaussian of a cell.
 template <int D>
 void addTerms(const GaussianMap<D>& map, const Vector<D>& point, std::size_t cell, int scale,
               std::vector<double>& terms) {
@@ -73,7 +73,7 @@ void addTerms(const GaussianMap<D>& map, const Vector<D>& point, std::size_t cel
   }
 }
 
-/// ln of the sum of e^term, divided by the weight; minus infinity without terms.
+/// Returns ln(sum of e^term / weight); minus infinity if there are no terms.
 double logOfMixture(const std::vector<double>& terms, double weight) {
   if (terms.empty()) return -std::numeric_limits<double>::infinity();
   double largest = terms.front();
@@ -88,7 +88,8 @@ double logOfMixture(const std::vector<double>& terms, double weight) {
 template <int D>
 std::vector<GaussianId> gaussiansOfScale(const GaussianMap<D>& map, int scale) {
   if (scale < 0 || scale >= map.scales())
-    throw std::out_of_range("scale " + std::to_string(scale) + ": the map has " + std::to_string(map.scales()));
+    throw std::out_of_range("scale " + std::to_string(scale) + ": the number of scales of the map is " +
+                            std::to_string(map.scales()));
   std::vector<GaussianId> all(map.gaussianCount(scale));
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = {scale, i};
   return all;
@@ -148,10 +149,10 @@ std::optional<NearestGaussian<D>> nearest(const GaussianMap<D>& map, const Vecto
   NearestGaussian<D> best{std::numeric_limits<std::size_t>::max(), std::numeric_limits<double>::infinity()};
   forEachNeighbour<D>(map, map.grid().keyOf(point, scale), scale,
                       [&](std::size_t cell) { improve<D>(map, point, cell, scale, best); });
-  // Nothing outside the neighbouring cells is nearer than the width of a cell.
+  // No mean outside the neighbouring cells is nearer than the side of a cell.
   if (best.distance < map.grid().side(scale)) return best;
 
-  // Best first from the coarsest scale down. A mean lies in its cell, up to the rounding that a map allows.
+  // Best-first search from the coarsest scale down. A mean lies in its cell, apart from the rounding that a map allows.
   struct Candidate {
     double bound;
     int scale;
@@ -208,7 +209,7 @@ std::optional<float> logOddsAt(const GaussianMap<D>& map, const Vector<D>& point
   for (int s = 0; s < map.scales(); ++s) {
     const auto cell = map.find(map.grid().ancestor(*key, 0, s), s);
     if (!cell) continue;
-    if (!map.isLeaf(*cell, s)) return std::nullopt;  // its detail says that there is nothing
+    if (!map.isLeaf(*cell, s)) return std::nullopt;  // no finer cell contains the point
     std::size_t nearest = 0;
     double least = std::numeric_limits<double>::infinity();
     const IndexRange all = map.gaussiansOf(*cell, s);

@@ -8,8 +8,8 @@
 
 namespace gaussmap::detail {
 
-/// sampleMap() with a box for every Gaussian [m, map frame], outside of which samples are rejected too. No boxes: the
-/// cells alone. options.bounds is not used.
+/// Samples a scale like sampleMap(), but also rejects samples outside the box of their Gaussian [m, map frame]. `boxes`
+/// has one box per Gaussian; if it is empty, only the cells limit the samples. options.bounds is not used.
 template <int D>
 MapSamples<D> sampleWithin(const GaussianMap<D>& map, int scale, const std::vector<Box<D>>& boxes,
                            const SampleOptions& options);

@@ -14,13 +14,13 @@ using namespace detail;
 
 namespace {
 
-constexpr std::size_t kGrain = 16;  // Gaussians a task
+constexpr std::size_t kGrain = 16;  // Gaussians per task
 
 std::size_t maxTries(std::size_t count) {
   return 1000 + 200 * count;
 }
 
-/// A number for one Gaussian that other cells coming or going do not change.
+/// Returns a number that identifies one Gaussian. It does not change if other cells are added or removed.
 template <int D>
 std::uint64_t partOf(int scale, const CellKey<D>& key, std::size_t rank) {
   std::uint64_t part = Random(static_cast<std::uint64_t>(scale)).bits();
@@ -28,7 +28,8 @@ std::uint64_t partOf(int scale, const CellKey<D>& key, std::size_t rank) {
   return Random(part ^ rank).bits();
 }
 
-/// Fills at most `count` slots from `first` on and returns how many. `box` may be null.
+/// Draws at most `count` samples of one Gaussian into the slots from `first` on. Returns the number of samples drawn.
+/// `box` can be null.
 template <int D>
 std::size_t sampleOne(const GaussianMap<D>& map, int scale, std::size_t index, const Box<D>* box, std::uint64_t seed,
                       std::size_t first, std::size_t count, MapSamples<D>& samples) {
@@ -36,8 +37,8 @@ std::size_t sampleOne(const GaussianMap<D>& map, int scale, std::size_t index, c
   const CellKey<D>& key = map.scale(scale).keys[cell];
   const Vector<D> centre = map.grid().centre(key, scale);
   const GaussianSampler<D> sampler(map.localGaussian(index, scale));
-  // A cell takes the points from half a lattice step below its lower face to half a step below its upper face.
-  // Staying half a step away from either end keeps the sum with the centre from rounding into the next cell.
+  // A cell contains the points from half a lattice step below its lower face to half a step below its upper face.
+  // Samples stay half a step away from both ends, so the sum with the centre cannot round into the next cell.
   const double step = map.grid().side(0) / static_cast<double>(kStepsPerCell), half = 0.5 * map.grid().side(scale);
   Vector<D> lowest = Vector<D>::Constant(-half), highest = Vector<D>::Constant(half - step);
   if (box != nullptr) {
@@ -58,7 +59,7 @@ std::size_t sampleOne(const GaussianMap<D>& map, int scale, std::size_t index, c
   return placed;
 }
 
-/// Moves the samples together over the slots that stayed empty.
+/// Moves the samples together to close the gaps of empty slots.
 template <int D>
 void closeGaps(const std::vector<std::size_t>& first, const std::vector<std::size_t>& placed, MapSamples<D>& samples) {
   std::size_t end = 0;
@@ -84,7 +85,7 @@ std::vector<std::size_t> countsOf(const GaussianMap<D>& map, const std::vector<G
     shares[i] =
         options.share == SampleShare::Volume ? std::exp(0.5 * logDeterminant<D>(gaussian.cov)) : gaussian.weight;
   });
-  double sum = 0.0;  // one after the other: the order of a parallel sum would show in the last bit
+  double sum = 0.0;  // sequential: a parallel sum would have another rounding error
   for (const double share : shares) sum += share;
   std::vector<std::size_t> counts(shares.size());
   for (std::size_t i = 0; i < shares.size(); ++i) {
@@ -94,7 +95,7 @@ std::vector<std::size_t> countsOf(const GaussianMap<D>& map, const std::vector<G
   return counts;
 }
 
-/// Samples of some Gaussians, each within its box; no boxes: within their cells.
+/// Samples the chosen Gaussians, each within its box. If `boxes` is empty, only the cells limit the samples.
 template <int D>
 MapSamples<D> sampleChosen(const GaussianMap<D>& map, const std::vector<GaussianId>& chosen,
                            const std::vector<Box<D>>& boxes, const SampleOptions& options) {

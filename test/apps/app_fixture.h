@@ -17,7 +17,7 @@ namespace gaussmap::test {
 
 using Json = nlohmann::json;
 
-/// The program as its users meet it: files, exit codes, and what stands on stdout and stderr.
+/// Tests the program as its users see it: files, exit codes, stdout and stderr.
 class AppTest : public testing::Test {
  protected:
   std::string own(const std::string& name) const { return (directory_.path() / name).string(); }
@@ -30,7 +30,7 @@ class AppTest : public testing::Test {
     return names;
   }
 
-  /// Succeeds in silence on stderr; returns stdout.
+  /// Expects success and an empty stderr; returns stdout.
   static std::string succeed(const std::vector<std::string>& arguments) {
     const Outcome outcome = runApp(arguments);
     EXPECT_EQ(outcome.code, 0) << testing::PrintToString(arguments) << outcome.err;
@@ -39,7 +39,8 @@ class AppTest : public testing::Test {
   }
   static Json infoOf(const std::string& map) { return Json::parse(succeed({"info", map, "--json"})); }
 
-  /// Fails with this code and one line on stderr that holds `word`; prints nothing else and makes no file.
+  /// Expects this exit code and one line on stderr that contains `word`. The program must print nothing else and create
+  /// no file.
   void expectFailure(int code, const std::string& word, const std::vector<std::string>& arguments,
                      const std::function<void()>& in_child = {}) const {
     SCOPED_TRACE(testing::PrintToString(arguments));
@@ -64,7 +65,7 @@ class AppTest : public testing::Test {
   TemporaryDirectory directory_;
 };
 
-/// Five small scans of the corner, made once, and an unrefined map of them.
+/// Five small scans of the corner and an unrefined map of them, created once for all tests.
 class Apps : public AppTest {
  protected:
   static void SetUpTestSuite() {

@@ -12,7 +12,8 @@
 
 namespace gaussmap::test {
 
-/// Where a beam from (ox, oy) in direction (dx, dy, .) enters or leaves a vertical cylinder, infinity: nowhere.
+/// Returns the distance at which a beam from (ox, oy) in direction (dx, dy, .) enters or leaves a vertical cylinder;
+/// infinity if it does not.
 inline double meetsCylinder(double ox, double oy, double dx, double dy, double x, double y, double radius,
                             bool from_inside) {
   const double a = dx * dx + dy * dy, b = (ox - x) * dx + (oy - y) * dy;
@@ -28,9 +29,9 @@ struct PostScan {
   std::string label = "label";  // the name of the field, 1 = on the post
 };
 
-/// Scan `index` of a sensor that rolls 0.1 m a scan through a round room (radius 10 m, floor 1.5 m below it); with a
-/// post of 0.5 m radius at (5, 0) that stands there for some scans only. Fields: x y z intensity (U2) label (U4) ring
-/// (U1, two of them), binary, sensor frame, pose in VIEWPOINT.
+/// Returns scan `index` of a sensor that moves 0.1 m per scan through a round room (radius 10 m, floor 1.5 m below the
+/// sensor). In some scans a post of 0.5 m radius is at (5, 0). Fields: x y z intensity (U2) label (U4) ring (U1, two of
+/// them), binary, sensor frame, pose in VIEWPOINT.
 inline std::string postScan(int index, const PostScan& scan) {
   constexpr int kRings = 24, kColumns = 360;
   constexpr double kPi = 3.14159265358979323846;
@@ -55,7 +56,7 @@ inline std::string postScan(int index, const PostScan& scan) {
          std::to_string(kRings * kColumns) + "\nDATA binary\n" + body;
 }
 
-/// Writes eight scans, the post in the first three of them, as FOLDER/scan0.pcd ...
+/// Writes eight scans as FOLDER/scan0.pcd and so on. The post is in the first three scans.
 inline void writePostScans(const TemporaryDirectory& directory, const std::string& folder, PostScan scan = {}) {
   std::filesystem::create_directories(directory.path() / folder);
   for (int i = 0; i < 8; ++i) {

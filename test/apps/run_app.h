@@ -15,17 +15,17 @@
 
 namespace gaussmap::test {
 
-/// What a program did.
+/// The result of a program.
 struct Outcome {
   int code = -1;   ///< exit code, -1 if a signal ended it
-  int signal = 0;  ///< that ended it
+  int signal = 0;  ///< the signal that ended it
   std::string out, err;
 };
 
-/// gaussmap at work; stdout and stderr go through files, so that no full pipe can stop it.
+/// A running gaussmap. stdout and stderr go through files, so no full pipe can block it.
 class StartedApp {
  public:
-  /// `in_child` runs in the new process just before the program; stdout goes to `out_path`, if there is one.
+  /// `in_child` runs in the new process just before the program. stdout goes to `out_path` if it is not empty.
   explicit StartedApp(const std::vector<std::string>& arguments, const std::function<void()>& in_child = {},
                       const std::string& out_path = "")
       : folder_((std::filesystem::temp_directory_path() / "gaussmap-run-XXXXXX").string()) {
@@ -57,7 +57,7 @@ class StartedApp {
   static constexpr int kNotStarted = 127;
   pid_t id() const { return child_; }
 
-  /// Waits for its end.
+  /// Waits for the end of the program.
   Outcome outcome() const {
     int status = 0;
     if (::waitpid(child_, &status, 0) != child_) throw std::runtime_error("lost " GAUSSMAP_APP);
@@ -71,7 +71,7 @@ class StartedApp {
   pid_t child_ = 0;
 };
 
-/// Runs gaussmap as a shell would.
+/// Runs gaussmap like a shell.
 inline Outcome runApp(const std::vector<std::string>& arguments, const std::string& out_path = "",
                       const std::function<void()>& in_child = {}) {
   return StartedApp(arguments, in_child, out_path).outcome();

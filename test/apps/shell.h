@@ -15,7 +15,7 @@ inline std::string shellQuoted(const std::string& word) {
   return quoted + "'";
 }
 
-/// The lines that a command of /bin/sh prints, stderr included.
+/// Returns the lines that a command of /bin/sh prints, including stderr.
 inline std::vector<std::string> linesOf(const std::string& command) {
   std::FILE* const pipe = ::popen((command + " 2>&1").c_str(), "r");
   std::string text;

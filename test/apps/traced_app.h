@@ -10,15 +10,15 @@
 
 namespace gaussmap::test {
 
-/// gaussmap as a debugger sees it: run to a call of the system and held there, so that "in the middle" is a place and
-/// not a time. One thread only (--threads 1).
+/// gaussmap under a tracer. It runs to a system call and is stopped there, so that a test can act at an exact place
+/// instead of at a certain time. One thread only (--threads 1).
 class TracedApp {
  public:
-  /// A call that was made: its number, the name of the file it is about (or got), its result.
+  /// A system call: its number and the file that it uses or opens.
   struct Call {
     std::uint64_t number = 0;
     std::string file;
-    bool begins = false;  ///< else it has just ended
+    bool begins = false;  ///< false: the call has just ended
   };
 
   explicit TracedApp(const std::vector<std::string>& arguments)
@@ -34,11 +34,11 @@ class TracedApp {
     if (held_) outcome(SIGKILL);
   }
 
-  /// False if the machine lets nobody trace; nothing else can be asked then.
+  /// Returns false if the machine does not permit tracing. The other functions do not work then.
   bool isTraced() const { return held_; }
   pid_t id() const { return app_.id(); }
 
-  /// Goes on until the n-th call from here that matches; false if the program ended before.
+  /// Continues until the n-th matching call from here. Returns false if the program ends before.
   template <typename Matches>
   bool runTo(const Matches& matches, int n = 1) {
     int signal = 0;
@@ -54,7 +54,7 @@ class TracedApp {
     }
   }
 
-  /// Sends it a signal, lets it go on by itself, waits for its end.
+  /// Sends a signal (0: none), lets the program continue without tracing, and waits for its end.
   Outcome outcome(int signal = 0) {
     if (signal != 0) ::kill(id(), signal);
     ::ptrace(PTRACE_DETACH, id(), nullptr, nullptr);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap_benchmark box-load MAP [SIDE]: seconds to load a whole map, and boxes of so many metres all over it, each
-// with a fresh MapReader, so that only the pages of the file are cached.
+// gaussmap_benchmark box-load MAP [SIDE]: measures the seconds to load a whole map, and boxes of SIDE metres all over
+// it. Each load uses a new MapReader, so only the pages of the file are cached.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -23,7 +23,7 @@ void loadBoxes(const std::string& path, double side) {
   Random random(1);
   std::vector<double> seconds;
   std::size_t cells = 0;
-  while (seconds.size() < 25 && !whole.empty()) {  // around cells drawn by lot
+  while (seconds.size() < 25 && !whole.empty()) {  // around random cells
     const std::size_t index = random.below(whole.cellCount(0));
     const Vector<3> centre = whole.grid().centre(whole.scale(0).keys[index], 0);
     const Vector<3> half = Vector<3>::Constant(0.5 * side);

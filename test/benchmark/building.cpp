@@ -19,13 +19,13 @@ MomentGrid<3> count(const Cloud& cloud, double side, int threads) {
   return countPoints(side, {cloud[0].data, cloud.size(), sizeof(pcl::PointXYZ) / sizeof(float)}, threads);
 }
 
-/// The exact sums alone: what a map keeps while it grows.
+/// Computes the exact sums only, which a map keeps while it grows.
 double sums(const Cloud& cloud, double side, int threads) {
   return static_cast<double>(count(cloud, side, threads).size());
 }
 
-/// The sums, the cells in key order, and the Gaussian of every cell with its eigen-decomposition, which
-/// VoxelGridCovariance makes too.
+/// Computes the sums, the cells in key order, and the Gaussian of every cell with its eigen-decomposition.
+/// VoxelGridCovariance computes the eigen-decomposition too.
 double gaussians(const Cloud& cloud, double side) {
   const GaussianMapOctree map = build<3>(count(cloud, side, 1), {side, 2, 1, 0.0});
   double flatness = 0.0;
@@ -34,7 +34,7 @@ double gaussians(const Cloud& cloud, double side) {
   return flatness;
 }
 
-/// The plain way: a standard hash map of double sums about the cell's centre.
+/// The simple method: a standard hash map of double sums relative to the centre of the cell.
 double unorderedMap(const Cloud& cloud, double side) {
   struct Key {
     int x, y, z;
@@ -74,7 +74,7 @@ double voxelGridCovariance(const Cloud::Ptr& cloud, double side) {
   return static_cast<double>(grid.getLeaves().size());
 }
 
-/// End points only, no rays.
+/// Adds the end points only, without rays.
 double octomapHits(const Cloud& cloud, double side) {
   octomap::OcTree tree(side);
   for (const pcl::PointXYZ& p : cloud) tree.updateNode(octomap::point3d(p.x, p.y, p.z), true, true);
@@ -123,7 +123,7 @@ void measureCoarsening(const Input& input, int runs, Table& table) {
       return static_cast<double>(build<3>(count(*input.cloud, 0.2, 1), {0.2, 5, count_of, 0.0}).cellCount(0));
     };
   };
-  // A small difference of two large times: a few runs would give half or twice the share.
+  // This is a small difference of two large times. With a few runs, the share would come out half or twice its value.
   const std::vector<Measured> of = measureInTurn({scales(1), scales(4)}, std::max(runs, 15));
   table.add(Figure{"coarser scales", input.name + ", 0.2, 1, 5, 25 m", "share of the build", "%",
                    100.0 * (of[1].seconds - of[0].seconds) / of[1].seconds});

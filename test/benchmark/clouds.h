@@ -22,7 +22,8 @@ struct NamedCloud {
   pcl::PointCloud<pcl::PointXYZ>::Ptr cloud;
 };
 
-/// The first scan of each directory or PCD file; without any, the first scan of the simulated street.
+/// Returns one cloud per path: the PCD file, or the first scan of the directory. Without paths, returns the first scan
+/// of the simulated street.
 inline std::vector<NamedCloud> loadClouds(const std::vector<std::string>& paths) {
   std::vector<NamedCloud> clouds;
   for (const std::string& path : paths) {
@@ -40,7 +41,8 @@ inline std::vector<NamedCloud> loadClouds(const std::vector<std::string>& paths)
   return {{"street, simulated", cloud}};
 }
 
-/// Least processor time of some runs [s]: other programs on the machine do not count. Of several threads: their sum.
+/// Returns the minimum processor time of some runs [s], summed over all threads. Other programs on the machine do not
+/// count.
 template <typename Run>
 double minSeconds(int runs, const Run& run) {
   double least = std::numeric_limits<double>::infinity();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap_benchmark filters [DIR or PCD...] [--json FILE]: GaussianMapFilter beside pcl::VoxelGrid, UniformSampling
-// and GridMinimum, each time with as many points. The claim is about coverage: how far the points of the input are from
-// the nearest point that was kept (95 %, mean). The other way, from kept points to the input, is printed beside it: it
-// is 0 for whatever keeps points as they are. One thread.
+// gaussmap_benchmark filters [DIR or PCD...] [--json FILE]: compares GaussianMapFilter with pcl::VoxelGrid,
+// UniformSampling and GridMinimum at the same number of points. The claim is about coverage: the distances from the
+// points of the input to the nearest kept point (95 %, mean). The distances from kept points to the input are printed
+// too; they are 0 for filters that keep points unchanged. One thread.
 #include <pcl/filters/grid_minimum.h>
 #include <pcl/filters/uniform_sampling.h>
 #include <pcl/filters/voxel_grid.h>
@@ -86,7 +86,7 @@ class Comparison {
   std::size_t won = 0, compared = 0;
 
  private:
-  /// The leaf size with which pcl::VoxelGrid keeps about so many points.
+  /// Returns the leaf size with which pcl::VoxelGrid keeps about this share of the points.
   static double leafFor(const NamedCloud& input, double share, double extent) {
     const auto target = double(input.cloud->size()) * share;
     double small = extent / 2000.0, large = extent;
@@ -137,7 +137,7 @@ class Comparison {
     return peers_.back().kept;
   }
 
-  /// Both outputs; the default one is compared with the peers since the last time.
+  /// Measures both outputs. The default output is compared with the peers measured since the last call.
   void ours(const NamedCloud& input, const Points& points, std::size_t budget) {
     for (const FilterOutput output : {FilterOutput::Means, FilterOutput::Samples}) {
       GaussianMapFilter<pcl::PointXYZ> filter;

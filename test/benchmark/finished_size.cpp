@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How small a finished map is beside OctoMap's .bt of the same mean error: the 1 m cells of a simulated street at twice
-// as many Gaussians as cells, and an octree whose occupied voxels lie as far from the true surface. Samples are
-// spread evenly over the volume of ellipsoids (inside their cells) and of voxels; distances are to the mesh. OctoMap
-// takes the scans as usual, with their rays; once more the end points alone, which knows no free space.
-// gaussmap_benchmark finished-size DIR (of gaussmap simulate street)
+// gaussmap_benchmark finished-size DIR (from gaussmap simulate street): compares the size of a final map with OctoMap's
+// .bt file of the same mean error. The map has the 1 m cells of a simulated street, with twice as many Gaussians as
+// cells. The octree has the resolution at which its occupied voxels lie equally far from the true surface. Samples are
+// spread evenly over the volume of ellipsoids (inside their cells) and of voxels. Distances are to the mesh. OctoMap
+// takes the scans with their rays, as usual, and also the end points alone, which give no free space.
 #include <octomap/octomap.h>
 
 #include <CLI/CLI.hpp>
@@ -58,7 +58,7 @@ class Octree {
     tree_.updateInnerOccupancy();
   }
 
-  /// Evenly over the volume of the occupied voxels.
+  /// Returns points spread evenly over the volume of the occupied voxels.
   std::vector<Vector<3>> samples() const {
     double volume = 0.0;
     for (auto leaf = tree_.begin_leafs(); leaf != tree_.end_leafs(); ++leaf)
@@ -77,10 +77,10 @@ class Octree {
     return points;
   }
 
-  /// Size of its .bt file [bytes].
+  /// Writes the .bt file and returns its size [bytes].
   std::uintmax_t bytes(const fs::path& folder) {
     const fs::path path = folder / "tree.bt";
-    tree_.writeBinary(path.string());  // as likely as it gets, pruned
+    tree_.writeBinary(path.string());  // maximum likelihood, pruned
     return fs::file_size(path);
   }
 
@@ -88,7 +88,7 @@ class Octree {
   octomap::OcTree tree_;
 };
 
-/// Looks for the resolution of equal error, from `resolution` on; prints what it finds and returns it.
+/// Searches for the resolution of equal error, starting from `resolution`. Prints the result and returns it.
 double compare(const std::vector<Scan>& scans, const MeshDistance& truth, bool rays, double resolution, double error,
                double bytes, const fs::path& folder) {
   for (int step = 0;; ++step) {
@@ -134,7 +134,7 @@ void compareSizes(const fs::path& folder) {
       meanError(sampleMap<3>(finish<3>(map, 0), 1, sampling).points, truth), size.file, size.scale_tiles.at(1));
   std::fflush(stdout);
   double resolution = 4.0 * error;       // a voxel crossed by a surface is about a quarter of its side away
-  for (const bool rays : {false, true})  // end points take a fraction of the time, and nearly the same resolution
+  for (const bool rays : {false, true})  // end points first: faster, and nearly the same resolution
     resolution = compare(scans, truth, rays, resolution, error, static_cast<double>(size.file), work);
   fs::remove_all(work);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap_benchmark frame-times MAP: how long a picture takes while a view of a map's scale turns (few triangles, or
-// points where that is slow), and when it stands, with the driver that draws named: what `gaussmap view` feels like.
-// Without a display too, then by software.
+// gaussmap_benchmark frame-times MAP: measures the time per picture of `gaussmap view`, while the view of a scale turns
+// (few triangles, or points where triangles are slow) and when it stands still. Prints the name of the driver. Without
+// a display it draws in software.
 #include <vtkCamera.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>

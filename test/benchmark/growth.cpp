@@ -12,7 +12,7 @@
 namespace gaussmap::benchmark {
 namespace {
 
-/// 25 blocks of the drive, 200 m apart: a square kilometre.
+/// Spreads the drive over a square kilometre: 25 blocks, 200 m apart.
 Cloud::Ptr spread(const Cloud& drive) {
   Cloud::Ptr wide(new Cloud(drive));
   for (std::size_t i = 0; i < wide->size(); ++i) {
@@ -23,7 +23,7 @@ Cloud::Ptr spread(const Cloud& drive) {
   return wide;
 }
 
-/// values ~ a x + b y, least squares of the relative errors; `worst` = the largest relative error of the fit.
+/// The fit values ~ a x + b y by least squares of the relative errors; `worst` = the largest relative error of the fit.
 struct Fit {
   double a = 0.0, b = 0.0, worst = 0.0;
 };

@@ -10,7 +10,7 @@
 namespace gaussmap::benchmark {
 namespace {
 
-/// Eight chains that do not wait for each other.
+/// Computes eight chains that are independent of each other.
 double shiftAndXor(std::uint64_t seed) {
   std::array<std::uint64_t, 8> state = {};
   for (std::uint64_t& s : state) s = ++seed;
@@ -31,7 +31,7 @@ double sumOf(const std::vector<std::uint64_t>& numbers) {
   return static_cast<double>(sum);
 }
 
-/// work(0) and work(1), one after the other or at once.
+/// Runs work(0) and work(1), one after the other or at the same time.
 template <typename Work>
 double both(const Work& work, int threads) {
   if (threads == 1) return work(0) + work(1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap_benchmark SUBCOMMAND: everything that is measured, see test/benchmark/RESULTS.md.
+// gaussmap_benchmark SUBCOMMAND: runs one benchmark. test/benchmark/RESULTS.md has the results.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
@@ -31,7 +31,7 @@ int main(int argc, char** argv) try {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;  // help, or wrong usage
+    return app.exit(error) == 0 ? 0 : 2;  // help or wrong usage
   }
   return 0;
 } catch (const std::exception& error) {

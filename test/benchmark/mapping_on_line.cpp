@@ -32,7 +32,7 @@ std::vector<Scan> scansIn(const std::filesystem::path& folder) {
   return scans;
 }
 
-/// Learning, occupancy, forgetting, refinement; all that pcd2map --online does but reading.
+/// Runs learning, occupancy, forgetting and refinement: everything that pcd2map --online does, except reading.
 double ours(const std::vector<Scan>& scans, double resolution, int threads) {
   OnlineOptions options;
   options.map = {resolution, 5, 3, 0.0};

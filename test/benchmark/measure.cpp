@@ -21,7 +21,7 @@
 namespace gaussmap::benchmark {
 namespace {
 
-/// A line of /proc/self/status [MB].
+/// Returns a value of /proc/self/status [MB], or 0 if the line is missing.
 double statusMegabytes(const std::string& name) {
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;)
@@ -32,7 +32,7 @@ double statusMegabytes(const std::string& name) {
 [[noreturn]] void child(const std::function<double()>& work, Start how, int out) {
   Measured measured;
   try {
-    std::ofstream("/proc/self/clear_refs") << 5;  // the peak begins anew
+    std::ofstream("/proc/self/clear_refs") << 5;  // resets the peak
     const double before = statusMegabytes("VmRSS");
     double start = wallSeconds();
     measured.value = work();
@@ -54,7 +54,7 @@ double statusMegabytes(const std::string& name) {
 Measured inChild(const std::function<double()>& work, Start how) {
   int ends[2];
   if (pipe(ends) != 0) throw std::runtime_error("no pipe to a child process");
-  malloc_trim(0);  // else the child finds memory that was never given back
+  malloc_trim(0);  // otherwise the child inherits memory that was freed but kept
   std::fflush(nullptr);
   const pid_t id = fork();
   if (id == 0) child(work, how, ends[1]);
@@ -99,11 +99,11 @@ std::vector<Measured> inTurn(const std::vector<Work>& works, int runs, const Run
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::mt19937_64 random(1);
   for (int i = 0; i < runs; ++i) {
-    // In a fixed order one work would always follow the peer that has just given back the most memory, and pay for it.
+    // In a fixed order, one work would always run after the peer that has just freed the most memory, and be slower.
     std::shuffle(order.begin(), order.end(), random);
     for (const std::size_t w : order) all[w].push_back(run(works[w]));
   }
-  // What else the machine does only ever makes a run longer.
+  // Other programs on the machine can only make a run longer, so the fastest run counts.
   std::vector<Measured> fastest;
   for (const std::vector<Measured>& of : all) {
     fastest.push_back(*std::min_element(of.begin(), of.end(),

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Moving objects: gaussmap clean, pcd2map --online, and OctoMap (insertPointCloud with rays, points of free cells
-// removed) on the same scans, one thread, at 0.2 and 0.1 m. SA, DA, AA in percent against the field `label` (without
-// one all points count as static), seconds per scan without reading. gaussmap_benchmark moving-points DIR...
+// gaussmap_benchmark moving-points DIR...: compares how gaussmap clean, pcd2map --online and OctoMap remove moving
+// objects from the same scans, with one thread, at 0.2 and 0.1 m. OctoMap uses insertPointCloud with rays; points of
+// free cells are removed. Prints SA, DA and AA in percent against the field `label` (without this field all points
+// count as static), and the seconds per scan without reading.
 #include <octomap/octomap.h>
 
 #include <CLI/CLI.hpp>
@@ -78,7 +79,7 @@ double online(const Sequence& sequence, double resolution) {
   OnlineOptions options;
   options.map = {resolution, 5, 3, 0.0};  // 0.2, 1, 5 m
   options.threads = 1;
-  std::set<CellKey<3>> touched;  // cells that something was deleted from
+  std::set<CellKey<3>> touched;  // cells from which a cluster was deleted
   OnlineMapper<3> mapper(options, [&](const RemovedCluster<3>& cluster) {
     if (cluster.scale == 0) touched.insert(cluster.key);
   });
@@ -96,7 +97,8 @@ double online(const Sequence& sequence, double resolution) {
   const double seconds = wallSeconds() - start;
   const GaussianMap<3> map = mapper.map();
   print("pcd2map --online", sequence.score([&](auto s, auto p) {
-    // Removed with its cell; or, if a part of the cell was deleted, beyond three standard deviations of the rest.
+    // A point counts as removed if its cell was removed. If only a part of the cell was deleted, a point counts as
+    // removed if it lies beyond three standard deviations of the rest.
     const Eigen::Vector3d point = sequence.inMap(s, p);
     const auto cell = map.find(map.grid().keyOf(point), 0);
     return !cell ||

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap_benchmark normals [DIR or PCD...] [--json FILE]: CellNormalEstimation beside pcl::NormalEstimationOMP
-// (20 neighbours): times with one and two threads, and the angle between their normals. Of the simulated street the
-// angles to the true normals too.
+// gaussmap_benchmark normals [DIR or PCD...] [--json FILE]: compares CellNormalEstimation with pcl::NormalEstimationOMP
+// (20 neighbours): times with one and two threads, and the angle between their normals. For the simulated street, also
+// prints the angles to the true normals.
 #include <pcl/features/normal_3d_omp.h>
 
 #include <CLI/CLI.hpp>
@@ -63,7 +63,7 @@ void compare(const NamedCloud& input, int runs, Table& table) {
       ours.compute(our_normals);
       our_seconds = std::min(our_seconds, now() - start);
       start = now();
-      theirs.setSearchMethod(nullptr);  // its tree is part of the work
+      theirs.setSearchMethod(nullptr);  // building the tree is part of the work
       theirs.compute(their_normals);
       their_seconds = std::min(their_seconds, now() - start);
     }
@@ -81,7 +81,7 @@ void compare(const NamedCloud& input, int runs, Table& table) {
   }
 }
 
-/// The same points without their picture, in which PCL looks for neighbours.
+/// Returns the same points as an unorganised cloud. In an organised cloud PCL searches the neighbours in the picture.
 NamedCloud asList(const NamedCloud& organised) {
   const auto list = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(*organised.cloud);
   list->width = static_cast<std::uint32_t>(list->size());
@@ -89,7 +89,7 @@ NamedCloud asList(const NamedCloud& organised) {
   return {organised.name + ", as a list", list};
 }
 
-/// Against the surfaces that the rays met.
+/// Compares the normals with those of the surfaces that the rays met.
 void compareWithTruth(Table& table) {
   const Simulation street = makeSimulation(WorldName::Street, {1, false});
   const SimulatedScan scan = simulateScan(street, 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap_benchmark table: gaussmap beside its peers, measured in the same run, each in a process of its own.
-// gaussmap_benchmark growth: time and memory against numbers of points and cells.
+// gaussmap_benchmark table: compares gaussmap with its peers in the same run, each in its own process.
+// gaussmap_benchmark growth: measures time and memory against the numbers of points and cells.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>

@@ -11,7 +11,7 @@
 namespace gaussmap::benchmark {
 namespace {
 
-/// Every coordinate, block by block, nothing kept: how maps are built from files.
+/// Reads every coordinate, block by block, and keeps nothing. Maps are built from files in this way.
 double blocks(const std::string& path) {
   const PcdReader reader(path);
   PointBlock<3> block;
@@ -24,7 +24,7 @@ double blocks(const std::string& path) {
   return sum != 0.0 ? static_cast<double>(reader.size()) : 0.0;
 }
 
-/// The coordinates of all points into memory of the same layout as PCL's.
+/// Reads the coordinates of all points into memory with the same layout as PCL's.
 double whole(const std::string& path) {
   const PcdReader reader(path);
   std::vector<std::array<float, 4>> points(reader.size());

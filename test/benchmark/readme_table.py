@@ -92,7 +92,7 @@ def times(inputs, parts, short=False):
 
 
 def beside(row):
-    """The time of a peer, and how many times that of gaussmap it is."""
+    """Returns the time of a peer and its ratio to the time of gaussmap."""
     ratio = f"{row['peer_seconds'] / row['seconds']:.3g} x"
     name, note = name_and_note(row["peer"])
     if name.endswith("one thread"):  # a speed-up

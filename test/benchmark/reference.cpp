@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap_benchmark reference MAP SCANS [map]: the finest scale of a map against its definition, in long double, using
-// the map's own code only to read files: cell = floor(p / side), mean and covariance of the points in it.
-// Fails if a cell, a count, a mean (1e-5 sides) or a covariance (1e-5 sides^2) differs.
+// gaussmap_benchmark reference MAP SCANS [map]: compares the finest scale of a map with its definition, in long double:
+// cell = floor(p / side), mean and covariance of the points in it. The map's own code only reads files, and finds the
+// cells of points on a border. Fails if a cell, a count, a mean (1e-5 sides) or a covariance (1e-5 sides^2) differs.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -25,7 +25,7 @@ void compareWithReference(const std::string& map_file, const std::string& folder
   for (const auto& path : listScans({folder})) scans.push_back({path, normalised(PcdReader(path).header().viewpoint)});
   AccumulateOptions options;
 
-  // Points within half a lattice step of a border may stand on either side of it: there the map decides.
+  // Points within half a lattice step of a border can be on either side of it. For these points the map decides.
   const long double side = static_cast<long double>(map.options().resolution), half_step = 0x1.0p-17L;
   std::map<CellKey<3>, std::vector<Vector<3>>> cells;
   for (const Vector<3>& point : readPoints(PcdScans(scans, frame), options)) {

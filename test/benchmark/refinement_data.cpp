@@ -11,11 +11,11 @@ using namespace detail;
 
 namespace {
 
-constexpr double kSpacing = 0.02;  // of the points on the truth [m]: a fifth of a finest cell
-constexpr double kObserved = 0.5;  // a surface counts as observed so near to a ray's end [m]
+constexpr double kSpacing = 0.02;  // distance of the points on the truth [m]: a fifth of a finest cell
+constexpr double kObserved = 0.5;  // a surface counts as observed up to this distance from a ray's end [m]
 
-/// Points of the surface near the ends of rays. The ends themselves are metres apart far from the sensor: measured
-/// against them, a map would be blamed for surface that it fills correctly.
+/// Returns points of the surface near the ends of rays. The ends themselves are no reference: far from the sensor they
+/// are metres apart, so a map that fills the surface between them correctly would seem wrong.
 std::vector<Vector<3>> observedSurface(const TriangleMesh& mesh, const std::vector<Vector<3>>& hits) {
   const auto count = static_cast<std::size_t>(surfaceArea(mesh) / (kSpacing * kSpacing));
   const std::vector<Vector<3>> all = sampleSurface(mesh, count);

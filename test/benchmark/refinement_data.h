@@ -13,26 +13,26 @@
 namespace gaussmap::refinement {
 
 struct LoadedData {
-  std::vector<Vector<3>> points;  // what the map is made of [m]
-  std::vector<Vector<3>> truth;   // what its samples are measured against [m]
-  std::vector<Vector<3>> hits;    // simulated: where the rays met the surface [m]; else empty
-  TriangleMesh mesh;              // simulated: the whole surface; else empty
+  std::vector<Vector<3>> points;  // points of the map [m]
+  std::vector<Vector<3>> truth;   // the reference for samples of the map [m]
+  std::vector<Vector<3>> hits;    // simulated: the points where rays met the surface [m]; otherwise empty
+  TriangleMesh mesh;              // simulated: the whole surface; otherwise empty
 };
 
 struct DataSet {
   std::string name;
-  std::string truth;  // in words
+  std::string truth;  // description of the truth
   MapOptions options;
-  std::vector<double> budgets;  // multiples of the coarsest scale's cells
+  std::vector<double> budgets;  // multiples of the number of cells of the coarsest scale
   bool simulated = false;
   std::function<LoadedData(std::uint64_t seed)> load;
 };
 
-/// All points of a simulated drive [m, map frame].
+/// Returns all points of a simulated drive [m, map frame].
 LoadedData simulatedDrive(const Simulation& simulation, std::uint64_t seed);
 
-/// The simulated street and avenue with `scans` scans each (0: as many as they have). If `data` names a folder: also
-/// one outdoor scan, one RGB-D image and one building.
+/// Returns the simulated street and avenue with `scans` scans each (0: all their scans). If `data` names a folder, also
+/// returns one outdoor scan, one RGB-D image and one building.
 std::vector<DataSet> dataSets(const std::filesystem::path& data, int scans);
 
 }  // namespace gaussmap::refinement

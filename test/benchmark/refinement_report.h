@@ -8,10 +8,10 @@
 
 namespace gaussmap::refinement {
 
-/// Markdown on stdout: all figures of one data set, means over the seeds with the worst in brackets.
+/// Prints all figures of one data set as Markdown: means over the seeds, with the worst seed in brackets.
 void printTable(const Table& table, const std::vector<Ratio>& ratios);
 
-/// The coarsest scales of all data sets in one table: 99 % / 95 % / mean over the seeds.
+/// Prints the coarsest scales of all data sets in one table: 99 % / 95 % / mean over the seeds.
 void printOverview(const std::vector<Table>& tables);
 
 nlohmann::ordered_json toJson(const Table& table, const std::vector<Ratio>& ratios);

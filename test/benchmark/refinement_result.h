@@ -16,26 +16,26 @@ inline constexpr const char* kParentSeed = "insertion with parent seed";
 inline constexpr const char* kAgglomeration = "agglomeration";
 inline constexpr const char* kUniformGrid = "uniform grid";
 
-/// What one seed gave: distances of samples.
+/// The result of one seed: distances of samples.
 struct Run {
   std::size_t gaussians = 0;
   DistanceSummary to_truth;
-  DistanceSummary missed;            // the other way: from the truth to the samples
-  DistanceSummary to_mesh, to_hits;  // simulated: to the exact surface, and to where rays met it
+  DistanceSummary missed;            // from the truth to the samples
+  DistanceSummary to_mesh, to_hits;  // simulated: to the exact surface, and to the points where rays met it
 };
 
-/// A method at a budget.
+/// The results of one method at one budget.
 struct Row {
   double budget = 1.0;
   std::string method;
   std::vector<Run> runs;
 };
 
-/// One data set.
+/// The results of one data set.
 struct Table {
   const DataSet* data = nullptr;
   std::vector<Row> rows;                // of the coarsest scale
-  Row middle{2.0, kAgglomeration, {}};  // simulated: the scale below it, and the finest
+  Row middle{2.0, kAgglomeration, {}};  // simulated: the next finer scale, and the finest
   Row finest{1.0, kOnePerCell, {}};
 
   Row& row(double budget, const std::string& method) {
@@ -46,7 +46,7 @@ struct Table {
   }
 };
 
-/// A number over the seeds.
+/// The mean and the worst value of a number over the seeds.
 struct Figure {
   double mean = 0.0, worst = 0.0;
 };

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap_benchmark refinement-speed [--scans 0] [--runs 5] [--json FILE]: seconds of agglomerative refinement on the
-// simulated street, one thread: the coarsest scale, and a middle scale of about 250,000 finest Gaussians; the
-// clustering alone beside scalar code with logarithms on the same data. Shortest of the runs, which take turns.
+// gaussmap_benchmark refinement-speed [--scans 0] [--runs 5] [--json FILE]: measures the seconds of agglomerative
+// refinement on the simulated street with one thread: for the coarsest scale, and for a middle scale of about 250,000
+// finest Gaussians. Also compares the clustering alone with scalar code with logarithms on the same input. Prints the
+// shortest of the runs, which take turns.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -35,13 +36,13 @@ double seconds(const Work& work) {
   return benchmark::wallSeconds() - start;
 }
 
-/// What a coarse cell's refinement starts from.
+/// The input of the refinement of one coarse cell.
 struct CellData {
   std::vector<Gaussian<3>> gaussians;
   std::vector<double> areas;
 };
 
-/// The same data that refine() clusters: blurred, with the number of occupied finest cells.
+/// Returns the input that refine() clusters: blurred Gaussians, and their numbers of occupied finest cells.
 std::vector<CellData> dataOf(const GaussianMap<3>& map, int coarse) {
   std::vector<double> areas(map.gaussianCount(0), 1.0);
   for (int s = 0; s + 1 < coarse; ++s) {
@@ -65,7 +66,7 @@ struct Times {
   double scalar = std::numeric_limits<double>::infinity();
 };
 
-/// Clusters cells with the library's code and with scalar code.
+/// Measures the clustering of cells with the library's code and with scalar code.
 void timeClustering(const std::vector<CellData>& cells, Times& times) {
   std::size_t merges = 0;  // used, so that no call is optimised away
   times.clustering = std::min(times.clustering, seconds([&] {
@@ -79,7 +80,7 @@ void timeClustering(const std::vector<CellData>& cells, Times& times) {
   if (merges == 0) throw std::logic_error("nothing was clustered");
 }
 
-/// The scalar code must be another way to the same result, with the cost that it has.
+/// Checks that the scalar code gives the same summed cost as the library with the same cost function.
 void checkScalar(const std::vector<CellData>& cells) {
   AgglomerateOptions options;
   options.cost = MergeCost::Runnalls;
@@ -103,10 +104,10 @@ RefineOptions oneThread() {
   return options;
 }
 
-/// Points of the first scans, so many that they fill about kFinest cells.
+/// Builds a map of so many of the first points that they fill about kFinest cells.
 GaussianMap<3> quarterMillion(const std::vector<Vector<3>>& points, std::size_t cells) {
   const double share = std::min(1.0, kFinest / static_cast<double>(cells));
-  // Cells grow nearly with the points along the way; two steps come near enough.
+  // The number of cells grows almost in proportion to the points along the way, so two corrections are enough.
   auto count = static_cast<std::size_t>(share * static_cast<double>(points.size()));
   GaussianMap<3> map({0.1, 10, 2});
   for (int step = 0; step < 3; ++step) {
@@ -118,7 +119,7 @@ GaussianMap<3> quarterMillion(const std::vector<Vector<3>>& points, std::size_t 
   return map;
 }
 
-/// The clustering beside the scalar code, and the refinement as a whole.
+/// Reports the clustering beside the scalar code, and the whole refinement.
 void report(const char* scale, std::size_t cells, std::size_t data, const Times& times, benchmark::Table& table) {
   const std::string input =
       std::string(scale) + ", " + std::to_string(data) + " Gaussians in " + std::to_string(cells) + " cells";

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap_benchmark refinement-table [--data DIR] [--seeds 3] [--scans 0] [--json FILE]: how far samples of the
-// coarsest scale lie from the data at equal numbers of Gaussians, for the refinements that gaussmap has, one Gaussian
-// per cell and a uniform grid. Seeds are those of the simulated noise, the random method and the sampling.
+// gaussmap_benchmark refinement-table [--data DIR] [--seeds 3] [--scans 0] [--json FILE]: measures how far samples of
+// the coarsest scale lie from the data at equal numbers of Gaussians: for the refinements of gaussmap, one Gaussian per
+// cell and a uniform grid. The seeds are those of the simulated noise, the random method and the sampling.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
@@ -21,7 +21,7 @@ using namespace detail;
 
 namespace {
 
-/// The truth of one seed, ready to measure maps.
+/// The truth of one seed, prepared for measuring maps.
 class Meter {
  public:
   Meter(const LoadedData& data, std::uint64_t seed) : truth_(data.truth) {
@@ -49,7 +49,7 @@ class Meter {
   std::optional<MeshDistance> mesh_;
 };
 
-/// Algorithm 2 and its queue.
+/// Returns the options of Algorithm 2 with its queue.
 RefineOptions paper(ClusterSeed seed_rule, std::uint64_t seed) {
   RefineOptions options;
   options.method = RefineMethod::Insert;
@@ -79,12 +79,12 @@ void addSeed(Table& table, std::uint64_t seed) {
   }
   if (!table.data->simulated) return;
   table.middle.runs.push_back(meter.measure(refine<3>(one, PerCell{table.middle.budget}).map, 1));
-  // At these scales the least number of samples decides, not the volume: with fewer for the many finest Gaussians the
-  // figures are the same and take a tenth of the time.
+  // At these scales the minimum number of samples decides, not the volume. With fewer samples for the many finest
+  // Gaussians, the figures are the same and take a tenth of the time.
   table.finest.runs.push_back(meter.measure(one, 0, 3));
 }
 
-/// The distance of another method as a multiple of that of agglomeration.
+/// Returns the distance of another method as a multiple of that of agglomeration.
 Ratio timesAgglomeration(Table& table, const char* name, double DistanceSummary::*quantity,
                          DistanceSummary Run::*summary, double budget, const Row& other) {
   const auto value = [=](const Run& run) { return run.*summary.*quantity; };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap_benchmark registration [--data DIR] [--starts 3] [--basin 10] [--json FILE]: a scan onto a scan, beside
-// NDT and GICP of PCL. DIR has the directories kitti_6scans, mulran_kaist03_21scans and dtk_indoor_3scans; a missing
-// directory is reported and left out. The simulated street is always measured. One thread, processor time. Prints
-// tables in Markdown.
+// gaussmap_benchmark registration [--data DIR] [--starts 3] [--basin 10] [--json FILE]: compares the registration of a
+// scan onto a scan with NDT and GICP of PCL. DIR has the directories kitti_6scans, mulran_kaist03_21scans and
+// dtk_indoor_3scans; a missing directory is reported and left out. The simulated street is always measured. One thread,
+// processor time. Prints tables in Markdown.
 #include <pcl/console/print.h>
 
 #include <CLI/CLI.hpp>
@@ -18,7 +18,7 @@
 namespace gaussmap::benchmark {
 namespace {
 
-constexpr double kMetres = 0.05, kDegrees = 0.2;  // a success
+constexpr double kMetres = 0.05, kDegrees = 0.2;  // maximum errors of a success
 constexpr Offset kNear{0.5, 1.0, false}, kBasin{5.0, 30.0, true};
 
 struct RegistrationOptions {
@@ -33,13 +33,13 @@ struct Dataset {
   Sizes sizes;
 };
 
-/// A kind of start: the poses to start from, by pair.
+/// One kind of start: the start poses per pair.
 struct Starts {
   std::string name;
   std::vector<std::vector<Pose>> poses;
 };
 
-/// Processor time [ms].
+/// Returns the processor time [ms].
 double now() {
   return 1e3 * processorSeconds();
 }
@@ -69,7 +69,7 @@ struct Score {
 
 void compare(const Dataset& data, const std::vector<Starts>& kinds, const std::vector<Method>& methods,
              const RegistrationOptions& options, Table& table) {
-  std::vector<Score> own;  // of the first method, ours
+  std::vector<Score> own;  // scores of the first method, which is ours
   double own_prepare = 0.0;
   std::printf("| %s, %zu pair%s | start | success | median off | prepare | align | both [ms] |\n", data.name.c_str(),
               data.pairs.size(), data.pairs.size() == 1 ? "" : "s");

@@ -13,27 +13,28 @@ namespace gaussmap::benchmark {
 
 using Points = std::vector<Eigen::Vector3d>;
 
-/// Two scans and where the second stood in the frame of the first.
+/// Two scans, and the pose of the second one in the frame of the first.
 struct ScanPair {
   std::string name;
   Points target, source;  ///< [m], sensor frame
   Pose reference;
 };
 
-/// Scans `step` apart, at most `most` pairs, of the street that the library simulates: the truth is exact.
+/// Returns at most `most` pairs of scans of the simulated street. The scans of a pair are `step` scans apart. The truth
+/// is exact.
 std::vector<ScanPair> streetPairs(std::size_t step, std::size_t most);
-/// The same of the PCD files of a directory, references from their VIEWPOINTs. Empty if
-/// there is no such directory.
+/// Returns the same for the PCD files of a directory. The reference poses come from their VIEWPOINTs. The result is
+/// empty if the directory does not exist.
 std::vector<ScanPair> filePairs(const std::filesystem::path& directory, std::size_t step, std::size_t most);
 
-/// Where a search starts from: the reference, moved and turned in any direction.
+/// The distance of a start pose from the reference, in any direction.
 struct Offset {
-  double translation, degrees;  ///< exactly so far, or at most (uniform)
+  double translation, degrees;  ///< exact values, or maxima of uniform values
   bool at_most;
 };
 Pose startFrom(const Pose& reference, const Offset& offset, std::uint64_t seed);
 
-/// How far a pose is from the reference.
+/// The difference between a pose and the reference.
 struct PoseError {
   double metres, degrees;
 };

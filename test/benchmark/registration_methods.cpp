@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// PCL's own templates: g++ 12 warns of what it has inlined into them.
+// g++ 12 warns about code that it has inlined into PCL's own templates.
 #pragma GCC diagnostic ignored "-Warray-bounds"
 #include "registration_methods.h"
 

@@ -10,7 +10,7 @@
 
 namespace gaussmap::benchmark {
 
-/// Two scans, prepared: what a method does once per pair.
+/// Two scans, prepared: the work that a method does once per pair.
 class Prepared {
  public:
   virtual ~Prepared() = default;
@@ -22,22 +22,22 @@ struct Method {
   std::function<std::unique_ptr<Prepared>(const ScanPair&)> prepare;
 };
 
-/// Sizes as a user chooses them for the place [m].
+/// Sizes that a user would choose for the place [m].
 struct Sizes {
   double map;       ///< finest cells of the map
   double ndt;       ///< voxels of pcl NDT
-  float ndt_leaf;   ///< its source goes through a pcl::VoxelGrid of this leaf
-  float gicp_leaf;  ///< both clouds do
+  float ndt_leaf;   ///< leaf of the pcl::VoxelGrid that filters the source of NDT
+  float gicp_leaf;  ///< leaf of the pcl::VoxelGrid that filters both clouds of GICP
 };
-constexpr Sizes kOutdoor{0.5, 1.0, 0.2f, 0.35f};  // the defaults of the two, the leaf of PCL's NDT tutorial
+constexpr Sizes kOutdoor{0.5, 1.0, 0.2f, 0.35f};  // map, ndt: their defaults; ndt_leaf: as in PCL's NDT tutorial
 constexpr Sizes kIndoor{0.2, 0.5, 0.1f, 0.1f};
 
-/// GaussianMapRegistration with its defaults.
+/// Returns GaussianMapRegistration with its defaults.
 Method gaussianMap(const Sizes& sizes);
-/// pcl::NormalDistributionsTransform as in PCL's tutorial: step .1, 35 iterations; but epsilon 1e-4: with the
-/// tutorial's .01 it stops after one step.
+/// Returns pcl::NormalDistributionsTransform as in PCL's tutorial (step 0.1, 35 iterations), but with epsilon 1e-4.
+/// With the 0.01 of the tutorial it stops after one step.
 Method pclNdt(const Sizes& sizes);
-/// pcl::GeneralizedIterativeClosestPoint with its defaults.
+/// Returns pcl::GeneralizedIterativeClosestPoint with its defaults.
 Method pclGicp(const Sizes& sizes);
 
 }  // namespace gaussmap::benchmark

@@ -10,8 +10,9 @@
 
 namespace gaussmap::refinement {
 
-/// Agglomeration as one writes it down: clusters as Eigen objects, Runnalls' cost with its logarithm pair by pair, and
-/// for every cluster the cheapest partner behind it, looked for anew when it is gone or has changed.
+/// Agglomeration in simple code. Clusters are Eigen objects. Runnalls' cost is computed pair by pair, with its
+/// logarithm. Every cluster stores the cheapest partner behind it, and searches again when the partner is gone or has
+/// changed.
 inline Dendrogram scalarAgglomerate(const std::vector<Gaussian<3>>& data) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   struct Cluster {

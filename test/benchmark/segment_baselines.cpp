@@ -44,7 +44,7 @@ struct Line {
   double along(const Vector<2>& point) const { return direction.dot(point - mean); }
 };
 
-/// Total least squares; the direction turned to look like another.
+/// Fits a line by total least squares. Its direction is turned to agree with `like`.
 Line fit(const Sums& sums, const Vector<2>& like) {
   const double mx = sums.x / sums.n, my = sums.y / sums.n;
   const double xx = sums.xx / sums.n - mx * mx, xy = sums.xy / sums.n - mx * my, yy = sums.yy / sums.n - my * my;
@@ -54,7 +54,7 @@ Line fit(const Sums& sums, const Vector<2>& like) {
   return line;
 }
 
-/// Points taken for one straight wall.
+/// Points that the method assigns to one straight wall.
 struct Piece {
   Sums sums;
   Line line;
@@ -77,7 +77,7 @@ void findPieces(const std::vector<Vector<2>>& points, std::size_t first, std::si
       at = i;
     }
   }
-  if (at < last) {  // the point at the break may be of either side, and is left out
+  if (at < last) {  // the point at the break can belong to either side, so it is left out
     findPieces(points, first, at, sensor, options, pieces);
     findPieces(points, at + 1, last, sensor, options, pieces);
     return;
@@ -112,7 +112,7 @@ std::vector<Piece> piecesOf(const LaserScan& scan, const EndPointFitOptions& opt
   return pieces;
 }
 
-/// How far apart two pieces of one wall are; nothing if they are none.
+/// Returns the distance between two pieces of one wall; std::nullopt if they belong to different walls.
 std::optional<double> distanceBetween(const Piece& a, const Piece& b, const EndPointFitOptions& options) {
   if (a.line.direction.dot(b.line.direction) < std::cos(options.merge_deg * std::acos(-1.0) / 180.0))
     return std::nullopt;
@@ -137,8 +137,8 @@ void takeIn(Piece& whole, const Piece& part) {
   }
 }
 
-/// The one of `map` (but not number `self`) that takes a piece, map.size() if none does. The longer one takes the
-/// shorter.
+/// Returns the nearest piece of `map`, except number `self`, that can be merged with `piece`; map.size() if no piece
+/// can. The longer piece takes the shorter one.
 std::size_t bestFor(const Piece& piece, const std::vector<Piece>& map, std::size_t self,
                     const EndPointFitOptions& options) {
   std::size_t best = map.size();
@@ -179,14 +179,14 @@ SegmentMap toMap(std::vector<Piece> pieces, std::size_t most) {
     segment.start = piece.start();
     segment.end = piece.end();
     segment.weight = piece.sums.n;
-    segment.covariance = Matrix<2>::Identity();  // it knows of none
+    segment.covariance = Matrix<2>::Identity();  // the method estimates no covariance
     map.chains.push_back({map.segments.size(), map.segments.size() + 1, false});
     map.segments.push_back(segment);
   }
   return map;
 }
 
-/// Moves an end and the start that is nearest to it to where their lines meet, if that is near both.
+/// Moves an end and the start that is nearest to it to the intersection of their lines, if this is near both.
 void joinCorners(SegmentMap& map, double reach) {
   for (Segment& from : map.segments) {
     Segment* nearest = nullptr;
@@ -226,13 +226,13 @@ SegmentMap endPointFit(const std::vector<LaserScan>& scans, std::size_t most, co
 
 namespace {
 
-/// The points near a line that lie around the first one without a gap.
+/// The points near a line, around the point by which it was found, up to the first gaps.
 struct Support {
   double first = 0.0, last = 0.0;  // along the line
   std::size_t points = 0;
 };
 
-constexpr double kBin = 0.1, kReach = 40.0;  // along a line, from the point that it was found by [m]
+constexpr double kBin = 0.1, kReach = 40.0;  // along a line, from the point by which it was found [m]
 constexpr int kBins = static_cast<int>(2.0 * kReach / kBin);
 
 Support supportOf(const Line& line, const std::vector<Vector<2>>& points, const RansacOptions& options) {

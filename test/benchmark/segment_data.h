@@ -13,14 +13,14 @@
 
 namespace gaussmap::benchmark {
 
-/// The scans of the log in a directory of a data set.
+/// Returns the scans of the CARMEN log in a directory of a data set.
 inline std::vector<LaserScan> readLogIn(const std::filesystem::path& folder) {
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     if (isCarmenLogName(entry.path())) return readCarmenLog(entry.path()).scans;
   throw FileError(folder, "no CARMEN log in this directory");
 }
 
-/// Every second scan, from the first or the second on.
+/// Returns every second scan, starting with scan `first`.
 inline std::vector<LaserScan> half(const std::vector<LaserScan>& scans, std::size_t first) {
   std::vector<LaserScan> part;
   for (std::size_t i = first; i < scans.size(); i += 2) part.push_back(scans[i]);
@@ -38,8 +38,8 @@ inline std::vector<Segment> truePlan() {
   return walls;
 }
 
-/// The floor plan through a laser with noise of its ranges [m]; each scan's position is wrong by its own normal error
-/// of `position_noise` in x and y [m], and says so.
+/// Returns scans of the simulated floor plan with noise of the ranges [m]. The position of each scan has its own normal
+/// error of `position_noise` in x and y [m], and the covariance of the pose contains this error.
 inline std::vector<LaserScan> scanPlan(double range_noise, double position_noise, std::uint64_t seed) {
   Simulation simulation = makeSimulation(WorldName::Plan);
   std::get<PlanarLaserOptions>(simulation.sensor).noise = range_noise;

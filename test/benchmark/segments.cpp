@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap_benchmark segments [--data DIR] [--seeds 3]: maps of line segments beside what is usually done, and the
-// study of Leal, Scheding, Dissanayake 2000. DIR has the directories carmen_intel and carmen_csail with a log each;
-// without it only the simulated plan is scanned. Prints tables in Markdown. One thread.
+// gaussmap_benchmark segments [--data DIR] [--seeds 3]: compares maps of line segments with common methods, and repeats
+// the study of Leal, Scheding, Dissanayake 2000. DIR has the directories carmen_intel and carmen_csail with one log
+// each. Without DIR only the simulated plan is scanned. Prints tables in Markdown. One thread.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -23,8 +23,8 @@ using namespace detail;
 namespace {
 
 constexpr std::size_t kMaxSegments = 500;
-constexpr double kRangeNoise = 0.02, kPositionNoise = 0.02;  // of the simulated plan [m]
-constexpr int kRuns = 5;                                     // of which the fastest counts
+constexpr double kRangeNoise = 0.02, kPositionNoise = 0.02;  // noise of the simulated plan [m]
+constexpr int kRuns = 5;                                     // number of runs, of which the fastest counts
 
 using Scans = std::vector<LaserScan>;
 using Method = std::function<SegmentMap(const Scans&)>;
@@ -71,7 +71,7 @@ void holdOut(const Scans& scans) {
   std::printf("\n");
 }
 
-/// Means over seeds.
+/// Prints means over the seeds.
 void plan(double position_noise, int seeds) {
   std::printf(
       "| plan, ranges +- %.0f cm, poses +- %.0f cm | segments | recall 5 cm | recall 2 cm | precision 5 cm | offset "
@@ -111,7 +111,7 @@ void plan(double position_noise, int seeds) {
   std::printf("\n");
 }
 
-/// Beams per second: scan by scan, and with the map at the end.
+/// Measures beams per second: scan by scan, and including the map at the end.
 void speed(const char* name, const Scans& scans, Table& table) {
   std::size_t beams = 0;
   for (const LaserScan& scan : scans)
@@ -148,7 +148,7 @@ void speed(const char* name, const Scans& scans, Table& table) {
   std::printf("| iterative end-point fit | | %.2f | 1 | |\n\n", rate(baseline));
 }
 
-/// Figs. 7 and 8 of the paper: what l_min does, with its utility.
+/// Figs. 7 and 8 of the paper: the effect of l_min, with the utility of the paper.
 void study(const char* name, const Scans& scans, int seeds) {
   std::printf(
       "| %s: l_min [m] | policy | normal deviation [cm] | segments | splits | merges | coverage "
@@ -187,7 +187,7 @@ void study(const char* name, const Scans& scans, int seeds) {
   std::printf("\n");
 }
 
-/// How fine a map is around a place.
+/// The level of detail of a map around a place.
 struct Detail {
   double per_metre = 0.0;  // segments per metre of length
   double variance = 0.0;   // mean of their normal variances, by length [m^2]
@@ -206,7 +206,7 @@ struct Detail {
   }
 };
 
-/// Eq. [5] of the paper: more detail round the sensor, and less again behind it.
+/// Eq. (5) of the paper: more detail around the sensor, and less detail behind it.
 void viewpoint(const char* name, const Scans& scans) {
   constexpr std::size_t kEvery = 50;  // scans between two places
   ViewpointDependentOptions dependent;

@@ -13,9 +13,9 @@
 
 namespace gaussmap::benchmark {
 
-/// A straight street, 200 m long: ground, two building fronts, poles every 10 m, seen by a 64-ring lidar every 2 m.
-/// Points in the map frame, in packet order (all rings of a column, then the next column). The drive begins again after
-/// 80 scans, with other noise. `threads` = 0: all cores.
+/// Returns points of a straight street, 200 m long, with ground, two building fronts and poles every 10 m. A 64-ring
+/// lidar scans it every 2 m. The points are in the map frame, in packet order (all rings of a column, then the next
+/// column). The drive starts again after 80 scans, with other noise. `threads`: 0 = all cores.
 inline std::vector<Vector<3>> streetPoints(std::size_t count, std::uint64_t first_scan = 0, int threads = 0) {
   constexpr double kPole = 0.15;  // its radius [m]
   TriangleMesh mesh = detail::rectangleMesh({{-100, -15, 0}, {200, 0, 0}, {0, 30, 0}});

@@ -6,7 +6,7 @@
 
 namespace gaussmap::benchmark {
 
-/// One comparison: the time that gaussmap and a peer take for the same task.
+/// One comparison: the times of gaussmap and of a peer for the same task.
 struct Row {
   std::string part, input;
   int threads = 1;         ///< of gaussmap; a peer that has no threads uses one
@@ -32,9 +32,9 @@ struct Table {
   void add(const Figure& figure);  ///< adds a figure and prints it
 };
 
-/// {"rows": [...], "figures": [...]}; throws std::runtime_error if it cannot be written.
+/// Writes {"rows": [...], "figures": [...]}. Throws std::runtime_error if the file cannot be written.
 void writeJson(const std::string& path, const Table& table);
-/// Adds what another subcommand wrote in this form.
+/// Adds the rows and figures that another subcommand wrote in this form.
 void addJson(const std::string& path, Table& table);
 
 }  // namespace gaussmap::benchmark

@@ -20,7 +20,7 @@ std::size_t occupiedCells(const std::vector<Vector<3>>& points, const MapOptions
   std::vector<CellKey<3>> keys;
   for (const Vector<3>& point : points) {
     const CellKey<3> key = grid.keyOf(point, 1);
-    if (keys.empty() || keys.back() != key) keys.push_back(key);  // scans seldom change cells
+    if (keys.empty() || keys.back() != key) keys.push_back(key);  // consecutive points often share a cell
   }
   std::sort(keys.begin(), keys.end());
   return static_cast<std::size_t>(std::unique(keys.begin(), keys.end()) - keys.begin());

@@ -8,10 +8,11 @@
 
 namespace gaussmap::refinement {
 
-/// The plain way to spend `most` Gaussians: one in each cell of a grid just fine enough. The side is found by bisection
-/// down from `widest` [m]; the map's scale 1 has it, its scale 0 cells of about `finest` [m], a whole number along a
-/// side, so that its Gaussians are made and sampled like those of other maps.
-/// Throws std::invalid_argument if even cells of `widest` are more than `most`.
+/// Returns a map with `most` Gaussians at most, in the simplest way: one per cell of a grid. The side of its cells is
+/// found by bisection down from `widest` [m], so that the grid is as fine as possible. Scale 1 of the map has this
+/// side. Scale 0 has cells of about `finest` [m], a whole number of them along a side. So the Gaussians are made and
+/// sampled like those of other maps. Throws std::invalid_argument if cells of side `widest` are already more than
+/// `most`.
 GaussianMap<3> uniformGrid(const std::vector<Vector<3>>& points, std::size_t most, double widest, double finest);
 
 }  // namespace gaussmap::refinement

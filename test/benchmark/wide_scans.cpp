@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap_benchmark wide-scans DIR POINTS [SCANS]: simulated points spread over a square kilometre: 25 blocks of the
-// simulated street, 200 m apart, each seen with other noise. Scans in the map frame, block by block.
+// gaussmap_benchmark wide-scans DIR POINTS [SCANS]: writes simulated points spread over a square kilometre: 25 blocks
+// of the simulated street, 200 m apart, each with other noise. The scans are in the map frame, block by block.
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>

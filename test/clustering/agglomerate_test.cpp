@@ -295,17 +295,17 @@ TEST(Agglomerate, NamesWhatItRefuses) {
   const Gaussian<3> good = sphere<3>(0, 1);
   Gaussian<3> bad = good;
   bad.weight = 0.0;
-  EXPECT_NE(messageFor({good, bad}, {1, 1}).find("datum 1 has no usable weight"), std::string::npos);
+  EXPECT_NE(messageFor({good, bad}, {1, 1}).find("Gaussian 1: the weight must be"), std::string::npos);
   bad = good;
   bad.mean(2) = std::nan("");
-  EXPECT_NE(messageFor({good, bad}, {1, 1}).find("datum 1 has no finite mean"), std::string::npos);
+  EXPECT_NE(messageFor({good, bad}, {1, 1}).find("Gaussian 1: the mean is not finite"), std::string::npos);
   bad = good;
   bad.cov(2, 2) = 0.0;
-  EXPECT_NE(messageFor({bad, good}, {1, 1}).find("covariance of datum 0"), std::string::npos);
+  EXPECT_NE(messageFor({bad, good}, {1, 1}).find("Gaussian 0: the covariance"), std::string::npos);
   EXPECT_THROW(agglomerate<3>({bad}, {1}), std::domain_error);
   for (const double area : {0.0, -1.0, HUGE_VAL, std::nan("")})
-    EXPECT_NE(messageFor({good, good}, {1, area}).find("datum 1 has no usable area"), std::string::npos);
-  EXPECT_NE(messageFor({good, good}, {1}).find("1 areas for 2 data"), std::string::npos);
+    EXPECT_NE(messageFor({good, good}, {1, area}).find("Gaussian 1: the area must be"), std::string::npos);
+  EXPECT_NE(messageFor({good, good}, {1}).find("1 areas for 2 Gaussians"), std::string::npos);
   AgglomerateOptions options;
   options.neighbours = 0;
   EXPECT_THROW(agglomerate<3>({good}, {1}, options), std::invalid_argument);

@@ -87,15 +87,15 @@ TEST(KLKMeans, NamesTheDatumThatItRefuses) {
     }
     return "accepted";
   };
-  EXPECT_EQ(messageFor([](Gaussian<3>& z) { z.weight = 0.0; }).find("argument: datum 3"), 0u);
-  EXPECT_EQ(messageFor([](Gaussian<3>& z) { z.weight = -1.0; }).find("argument: datum 3"), 0u);
-  EXPECT_EQ(messageFor([](Gaussian<3>& z) { z.weight = std::nan(""); }).find("argument: datum 3"), 0u);
-  EXPECT_EQ(messageFor([](Gaussian<3>& z) { z.weight = HUGE_VAL; }).find("argument: datum 3"), 0u);
-  EXPECT_EQ(messageFor([](Gaussian<3>& z) { z.mean.y() = std::nan(""); }).find("argument: datum 3"), 0u);
-  EXPECT_EQ(messageFor([](Gaussian<3>& z) { z.cov(1, 1) = -1.0; }).find("domain: datum 3"), 0u);
-  EXPECT_EQ(messageFor([](Gaussian<3>& z) { z.cov.setOnes(); }).find("domain: datum 3"), 0u);
-  EXPECT_EQ(messageFor([](Gaussian<3>& z) { z.cov(2, 0) = std::nan(""); }).find("domain: datum 3"), 0u);
-  EXPECT_EQ(messageFor([](Gaussian<3>& z) { z.cov(0, 0) = HUGE_VAL; }).find("domain: datum 3"), 0u);
+  EXPECT_EQ(messageFor([](Gaussian<3>& z) { z.weight = 0.0; }).find("argument: Gaussian 3"), 0u);
+  EXPECT_EQ(messageFor([](Gaussian<3>& z) { z.weight = -1.0; }).find("argument: Gaussian 3"), 0u);
+  EXPECT_EQ(messageFor([](Gaussian<3>& z) { z.weight = std::nan(""); }).find("argument: Gaussian 3"), 0u);
+  EXPECT_EQ(messageFor([](Gaussian<3>& z) { z.weight = HUGE_VAL; }).find("argument: Gaussian 3"), 0u);
+  EXPECT_EQ(messageFor([](Gaussian<3>& z) { z.mean.y() = std::nan(""); }).find("argument: Gaussian 3"), 0u);
+  EXPECT_EQ(messageFor([](Gaussian<3>& z) { z.cov(1, 1) = -1.0; }).find("domain: Gaussian 3"), 0u);
+  EXPECT_EQ(messageFor([](Gaussian<3>& z) { z.cov.setOnes(); }).find("domain: Gaussian 3"), 0u);
+  EXPECT_EQ(messageFor([](Gaussian<3>& z) { z.cov(2, 0) = std::nan(""); }).find("domain: Gaussian 3"), 0u);
+  EXPECT_EQ(messageFor([](Gaussian<3>& z) { z.cov(0, 0) = HUGE_VAL; }).find("domain: Gaussian 3"), 0u);
 }
 
 TEST(KLKMeans, RefusesReferencesItCannotStartFrom) {

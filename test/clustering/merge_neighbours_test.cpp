@@ -108,7 +108,7 @@ TEST(Agglomerate, BreaksTiesAsBruteForceDoes) {  // a lattice of equal Gaussians
     for (const MergeCost cost : {MergeCost::Volume, MergeCost::Runnalls}) {
       AgglomerateOptions options;
       options.cost = cost;
-      // Everyone is a neighbour, whatever is looked for anew: every pair is a candidate all the time.
+      // All clusters are neighbours, also after each new search, so every pair is always a candidate.
       const Dendrogram expected = bruteForce(MergeHistory<2>(data, areas, cost), data.size(), 1);
       expectSame(agglomerate(data, areas, options), expected);
       options.max_exact = 0;

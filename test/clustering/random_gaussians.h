@@ -8,7 +8,7 @@
 
 namespace gaussmap {
 
-/// `n` Gaussians around the origin, of any shape and weight.
+/// Returns `n` Gaussians of any shape and weight around the origin.
 template <int D>
 std::vector<Gaussian<D>> randomGaussians(Random& random, std::size_t n) {
   std::vector<Gaussian<D>> gaussians(n);
@@ -24,9 +24,10 @@ std::vector<Gaussian<D>> randomGaussians(Random& random, std::size_t n) {
   return gaussians;
 }
 
-inline constexpr std::size_t kPatches = 60;  // of each part of wallsAndPole()
+inline constexpr std::size_t kPatches = 60;  // number per object of wallsAndPole()
 
-/// Patches of 10 cm: a wall x = 0, a wall y = 0 (both 2 m wide and high, apart from the corner), a pole at (1.5, 1.5).
+/// Returns patches of 10 cm: of a wall x = 0, a wall y = 0 (both 2 m wide and high, without the corner) and a pole at
+/// (1.5, 1.5).
 inline std::vector<Gaussian<3>> wallsAndPole(Random& random) {
   const auto patch = [&](double x, double y, double z, const Eigen::Vector3d& deviations) {
     const Eigen::Vector3d mean =

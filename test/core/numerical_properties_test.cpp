@@ -48,7 +48,7 @@ Matrix<D> randomRotation(Random& random) {
     return randomQuaternion(random).toRotationMatrix();
 }
 
-/// Symmetric to the last bit, as the library makes them.
+/// Returns an exactly symmetric covariance, like those of the library.
 template <int D>
 Matrix<D> turned(const Matrix<D>& rotation, const Matrix<D>& cov) {
   const Matrix<D> result = rotation * cov * rotation.transpose();

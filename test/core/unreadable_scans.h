@@ -8,7 +8,7 @@
 
 namespace gaussmap::test {
 
-/// One scan that cannot be read: shows what is checked before anything is read.
+/// One scan that cannot be read. It shows which checks happen before anything is read.
 class UnreadableScans : public Scans {
  public:
   std::size_t size() const override { return 1; }

@@ -87,7 +87,7 @@ def main():
                                      capture_output=True, text=True).stdout.splitlines()
             if len(printed) != len(exported(folder / f"{file}.csv").get(1, [])):
                 sys.exit(f"{title}: the program prints {len(printed)} lines")
-            print(f"{title}: {count} Gaussians " + (f"within {tolerance:g}" if tolerance else "equal to the last bit"))
+            print(f"{title}: {count} Gaussians " + (f"within {tolerance:g}" if tolerance else "bit-identical"))
 
 
 if __name__ == "__main__":

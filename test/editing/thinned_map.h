@@ -9,8 +9,8 @@
 namespace gaussmap::test {
 using namespace detail;
 
-/// A compressed map with leaves at every scale: nothing is left under every third cell of the coarsest scale and every
-/// second one of the others.
+/// Returns a compressed map with leaves at every scale. It deletes everything below every third cell of the coarsest
+/// scale and below every second cell of the other scales.
 template <int D>
 GaussianMap<D> thinned(const GaussianMap<D>& map) {
   std::vector<std::vector<char>> keep(static_cast<std::size_t>(map.scales()));

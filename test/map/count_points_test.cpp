@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-/// Records of `stride` floats, x y z first; one point in 50 is none.
+/// Returns records of `stride` floats, x y z first. One point in 50 is not finite.
 std::vector<float> randomRecords(std::size_t count, std::size_t stride, double extent) {
   Random random(7);
   std::vector<float> records(count * stride);

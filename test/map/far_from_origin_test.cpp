@@ -23,7 +23,7 @@ namespace {
 const MapOptions kOptions{0.125, 10, 3, 0.0};
 const Vector<3> kShift(5e6, -5e6, 5e6);
 
-/// Everything equal to the last bit but the keys, which differ by the shift.
+/// Expects bit-identical maps, except for the keys, which differ by the shift.
 void expectShifted(const GaussianMapOctree& here, const GaussianMapOctree& there) {
   for (int s = 0; s < here.scales(); ++s) {
     SCOPED_TRACE(s);

@@ -8,7 +8,8 @@
 
 namespace gaussmap::test {
 
-/// Points as maps meet them: clusters of all sizes, some flat, some single points, within about 4 m of the origin.
+/// Returns points like those of real maps: clusters of all sizes, some of them flat, and some single points, within
+/// about 4 m of the origin.
 template <int D>
 std::vector<Vector<D>> randomCloud(std::size_t count, std::uint64_t seed) {
   Random random(seed);

@@ -22,7 +22,7 @@ MapOptions smallGrid(int ratio = 4, int scales = 3) {
   return options;
 }
 
-/// Three Gaussians a coarse cell, as many as there are finer ones at most.
+/// Returns a map with three Gaussians per coarse cell, or fewer if the cell has fewer finer ones.
 template <int D>
 GaussianMap<D> refinedMap(const std::vector<Vector<D>>& points, const MapOptions& options) {
   RefineOptions refinement;
@@ -30,7 +30,7 @@ GaussianMap<D> refinedMap(const std::vector<Vector<D>>& points, const MapOptions
   return refine<D>(build<D>(points, options), PerCell{}, refinement).map;
 }
 
-/// Every coarse cluster is the moment match of what is linked to it, and something is.
+/// Checks that every coarse cluster, except leaves, has children and is their moment match.
 template <int D>
 void expectMomentMatches(const GaussianMap<D>& map) {
   for (int s = 1; s < map.scales(); ++s) {
@@ -48,7 +48,7 @@ void expectMomentMatches(const GaussianMap<D>& map) {
   }
 }
 
-/// The moment match of a whole scale: what nothing that only sorts or merges may change.
+/// Returns the moment match of a whole scale. Sorting and merging must not change it.
 template <int D>
 Gaussian<D> matchOfScale(const GaussianMap<D>& map, int s) {
   std::vector<Gaussian<D>> all;
@@ -63,7 +63,7 @@ void expectSameMatch(const Gaussian<D>& a, const Gaussian<D>& b, double toleranc
   EXPECT_LT((a.cov - b.cov).norm(), tolerance);
 }
 
-/// The same cells and sums at the finest scale.
+/// Compares the cells and sums of the finest scales.
 template <int D>
 testing::AssertionResult sameFinest(const GaussianMap<D>& a, const GaussianMap<D>& b) {
   if (a.scale(0).keys != b.scale(0).keys) return testing::AssertionFailure() << "cells";
@@ -71,7 +71,7 @@ testing::AssertionResult sameFinest(const GaussianMap<D>& a, const GaussianMap<D
   return testing::AssertionSuccess();
 }
 
-/// Moves points.
+/// Returns the points, moved by a vector.
 template <int D>
 std::vector<Vector<D>> shifted(std::vector<Vector<D>> points, const Vector<D>& by) {
   for (Vector<D>& point : points) point += by;

@@ -30,7 +30,7 @@ inline RefineOptions by(RefineMethod method) {
   return options;
 }
 
-/// The Gaussians of scale s - 1 under a cell of scale s, about the cell's centre.
+/// Returns the Gaussians of scale s - 1 below a cell of scale s, with means relative to the centre of the cell.
 inline std::vector<Gaussian<3>> dataUnder(const GaussianMap<3>& map, std::size_t cell, int s) {
   std::vector<Gaussian<3>> data;
   gatherUnder(map.scale(s - 1), map.grid(), s - 1, map.childCells(cell, s), data);

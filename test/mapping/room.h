@@ -8,7 +8,8 @@
 
 namespace gaussmap {
 
-/// Points on a floor, two walls at right angles and a pole, 1 cm rough, about 6 m wide; both signs of all coordinates.
+/// Returns points on a floor, two walls at right angles and a pole, with a roughness of 1 cm, about 6 m wide. All
+/// coordinates have both signs.
 inline std::vector<Vector<3>> roomPoints(Random& random, std::size_t n) {
   std::vector<Vector<3>> points;
   for (std::size_t i = 0; i < n; ++i) {

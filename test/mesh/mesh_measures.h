@@ -9,7 +9,7 @@
 
 namespace gaussmap::test {
 
-/// By the divergence theorem: positive if the triangles look outwards, negative if inwards.
+/// Returns the volume by the divergence theorem: positive if the triangles face outwards, negative if inwards.
 inline double volume(const TriangleMesh& mesh) {
   double sum = 0.0;
   for (const auto& [a, b, c] : mesh.triangles)
@@ -17,7 +17,7 @@ inline double volume(const TriangleMesh& mesh) {
   return sum;
 }
 
-/// Has every edge one triangle on either side, turning the other way?
+/// Returns true if every edge has exactly two triangles, one per direction of the edge.
 inline bool isClosed(const TriangleMesh& mesh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   for (const auto& t : mesh.triangles)

@@ -10,11 +10,11 @@
 #include "gaussmap/core/gaussian.h"
 #include "mesh/mesh_tree.h"
 
-// Meshes for tests, and the same questions answered without a tree and in another way.
+// Meshes for tests, and functions that answer the same questions without a tree and in another way.
 namespace gaussmap::test {
 using namespace detail;
 
-/// In the plane z = 0: (0, 0), (4, 0), (0, 3).
+/// Returns the triangle (0, 0), (4, 0), (0, 3) in the plane z = 0.
 inline TriangleMesh oneTriangle() {
   return {{{0, 0, 0}, {4, 0, 0}, {0, 3, 0}}, {{0, 1, 2}}};
 }
@@ -23,7 +23,7 @@ inline Eigen::Vector3d randomPoint(Random& random, double size) {
   return size * Eigen::Vector3d(random.normal(), random.normal(), random.normal());
 }
 
-/// Triangles of very different sizes; every tenth without area.
+/// Returns triangles of very different sizes. Every tenth has no area.
 inline TriangleMesh randomMesh(std::uint64_t seed, std::size_t triangles, const Eigen::Vector3d& offset = {0, 0, 0}) {
   Random random(seed);
   TriangleMesh mesh;
@@ -44,7 +44,8 @@ inline double distanceToSegment(const Eigen::Vector3d& p, const Eigen::Vector3d&
   return (p - a - std::clamp(along.dot(p - a), 0.0, length) * along).norm();
 }
 
-/// By the foot on the plane, inside or not by the signs of three cross products.
+/// Returns the distance to a triangle. Uses the foot of the point on the plane; the signs of three cross products tell
+/// whether the foot is inside.
 inline double distanceToTriangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                  const Eigen::Vector3d& c) {
   const double edges = std::min({distanceToSegment(p, a, b), distanceToSegment(p, b, c), distanceToSegment(p, c, a)});
@@ -64,8 +65,8 @@ inline double slowDistance(const TriangleMesh& mesh, const Eigen::Vector3d& p) {
   return least;
 }
 
-/// First hit of a ray, by the plane and the signs of three volumes; and how near to an edge it is, for those that may
-/// be decided either way.
+/// The first hit of a ray, from the plane and the signs of three volumes. `edge` is the distance of the hit from the
+/// nearest edge; near an edge, both results are acceptable.
 struct SlowHit {
   double range = std::numeric_limits<double>::infinity();
   double edge = 0.0;

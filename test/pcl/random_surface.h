@@ -15,7 +15,7 @@
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpedantic"
-/// A user's own point type, registered as PCL asks for it.
+/// A point type of a user, registered as PCL requires it.
 struct EIGEN_ALIGN16 RingPoint {
   PCL_ADD_POINT4D;
   float echo;
@@ -30,7 +30,7 @@ namespace gaussmap::test {
 
 inline constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-/// A wavy floor of 4 m x 3 m, row by row.
+/// Returns a wavy floor of 4 m x 3 m, row by row.
 template <typename PointT>
 typename pcl::PointCloud<PointT>::Ptr wavyFloor(std::uint32_t width = 40, std::uint32_t height = 30) {
   auto cloud = pcl::make_shared<pcl::PointCloud<PointT>>(width, height);

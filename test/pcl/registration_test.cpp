@@ -255,7 +255,7 @@ TEST(GaussianMapRegistration, AlignsWithAMapThatWasMadeBefore) {
   }
   EXPECT_EQ(by_map.getInputTarget()->size(), map->gaussianCount(0));
   by_map.setResolution(0.3);
-  EXPECT_EQ(by_map.getTargetMap(), map);  // it is not made anew
+  EXPECT_EQ(by_map.getTargetMap(), map);  // it is not rebuilt
 }
 
 TEST(GaussianMapRegistration, StopsAfterTheIterationsThatItIsGiven) {

@@ -7,7 +7,8 @@
 
 namespace gaussmap {
 
-/// The scan as PCL has it: floats in the sensor's frame, with its pose. Not dense, for tests put NaN in.
+/// Returns the scan as a PCL cloud: floats in the frame of the sensor, with its pose. is_dense is false because tests
+/// add NaN.
 template <typename PointT>
 typename pcl::PointCloud<PointT>::Ptr cloudOf(const SimulatedScan& scan) {
   auto cloud = pcl::make_shared<pcl::PointCloud<PointT>>();

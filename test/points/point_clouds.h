@@ -13,7 +13,7 @@ namespace gaussmap::test {
 
 using Points = std::vector<Vector<3>>;
 
-/// Uniform in a cube of 1 m with its lowest corner at `corner`.
+/// Returns uniform points in a cube of 1 m with its lowest corner at `corner`.
 inline Points cube(std::size_t count, std::uint64_t seed, const Vector<3>& corner = Vector<3>::Zero()) {
   Random random(seed);
   Points points(count);
@@ -22,7 +22,7 @@ inline Points cube(std::size_t count, std::uint64_t seed, const Vector<3>& corne
   return points;
 }
 
-/// Each distance from all pairs.
+/// Returns the distance from each point of `from` to the nearest point of `to`, by comparing all pairs.
 inline std::vector<double> allPairs(const Points& from, const Points& to) {
   std::vector<double> distances;
   for (const Vector<3>& point : from) {
@@ -38,7 +38,7 @@ struct CloudPair {
   Points a, b;
 };
 
-/// Pairs of clouds that search trees have trouble with.
+/// Returns pairs of clouds that are difficult for search trees.
 inline std::vector<CloudPair> hostilePairs() {
   std::vector<CloudPair> pairs;
   const Vector<3> one(1, 2, 3), far(1e7, -1e7, 1e7);
@@ -68,7 +68,7 @@ inline std::vector<CloudPair> hostilePairs() {
                    }()});
   pairs.push_back({"a tiny heap with an outlier and a line", heap, line});
   pairs.push_back({"a tiny heap with an outlier and itself backwards", heap, Points(heap.rbegin(), heap.rend())});
-  pairs.push_back({"a shell around a cube", shell, cube(1500, 12)});  // every point is about as near
+  pairs.push_back({"a shell around a cube", shell, cube(1500, 12)});  // all points are at similar distances
   pairs.push_back({"gaps that double 1000 times and a cube", steps, cube(500, 13)});
   pairs.push_back({"every point twice and a cube", twice, cube(500, 14)});
   pairs.push_back({"a few points far apart and a cube", {1e6 * one, -1e6 * one, one, far}, cube(1500, 15)});

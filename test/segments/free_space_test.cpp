@@ -70,7 +70,7 @@ TEST(Views, TellWhatWentThroughASegmentThatWasMadeLater) {
   for (int i = 0; i < 5; ++i) views.add(test::look(walls, 0.01 + 0.02 * i, 0.01, 0.01, 0.0, random));
   std::deque<LiveSegment> segments = {liveWall({1.0, -0.5}, {1.0, 0.5}), liveWall({4.0, -0.5}, {4.0, 0.5})};
   views.countCrossings(segments);
-  views.countCrossings(segments);  // anew, not on top
+  views.countCrossings(segments);  // counts again from zero, does not add
   // 5 scans of about 2 * atan(0.45) / 1 degree beams.
   EXPECT_NEAR(crossed(segments[0]), 5.0 * 48.0, 10.0);
   EXPECT_DOUBLE_EQ(crossed(segments[1]), 0.0);

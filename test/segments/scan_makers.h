@@ -18,12 +18,13 @@ inline Segment wall(double x0, double y0, double x1, double y1) {
   return segment;
 }
 
-/// A closed room with free space inside: its walls counter-clockwise.
+/// Returns the walls of a closed room with free space inside, counter-clockwise.
 inline std::vector<Segment> room(double x0, double y0, double x1, double y1) {
   return {wall(x0, y0, x1, y0), wall(x1, y0, x1, y1), wall(x1, y1, x0, y1), wall(x0, y1, x0, y0)};
 }
 
-/// What a laser with one beam a degree and a full view but for the seam behind it sees of walls, from either side.
+/// Returns the scan of a laser with one beam per degree. It has a full view except for the seam behind it, and sees
+/// walls from either side.
 inline LaserScan look(const std::vector<Segment>& walls, double x, double y, double heading, double noise,
                       Random& random, int beams = 360) {
   LaserScan scan;

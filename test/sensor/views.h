@@ -10,13 +10,13 @@
 #include "gaussmap/core/gaussian.h"
 #include "gaussmap/sensor/range_image.h"
 
-// Sensors for tests, and images of scenes that are a formula.
+// Sensors for tests, and images of scenes that are given by a formula.
 namespace gaussmap::test {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kDegree = kPi / 180.0;
 
-/// Rows of equal height.
+/// Returns a lidar with rows of equal height.
 inline SphericalProjection lidar(int rows, double lowest_deg, double highest_deg, int columns) {
   SphericalProjection projection;
   for (int border = 0; border <= rows; ++border)
@@ -33,13 +33,14 @@ inline Eigen::Vector3d randomDirection(Random& random) {
   return Eigen::Vector3d(random.normal(), random.normal(), random.normal()).normalized();
 }
 
-/// Anywhere in the ball, half of the points on its surface.
+/// Returns a random point of the ball. Half of the points are on its surface.
 inline Eigen::Vector3d randomPointOfBall(Random& random, const Eigen::Vector3d& centre, double radius) {
   const double r = random.below(2) == 0 ? radius : radius * std::cbrt(random.uniform());
   return centre + r * randomDirection(random);
 }
 
-/// One beam through the middle of each pixel; `range` [m] of a unit vector, nothing: no return.
+/// Returns an image with one beam through the middle of each pixel. `range` gives the range [m] along a unit vector, or
+/// std::nullopt for no return.
 inline RangeImage imageOf(const Projection& projection,
                           const std::function<std::optional<double>(const Eigen::Vector3d&)>& range) {
   RangeImage image(projection);

@@ -8,7 +8,7 @@
 
 namespace gaussmap::test {
 
-/// All bytes of a file, none if it cannot be opened.
+/// Returns all bytes of a file, or an empty string if it cannot be opened.
 inline std::string contentsOf(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};

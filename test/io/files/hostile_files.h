@@ -10,10 +10,10 @@
 #include "gaussmap/core/error.h"
 #include "gaussmap/core/gaussian.h"
 
-// Files that a reader must read or refuse with one FileError, whatever their bytes.
+// Checks that a reader either reads a file or refuses it with one FileError, whatever its bytes are.
 namespace gaussmap::test {
 
-/// What the FileError says that the action throws, "" if it throws nothing.
+/// Returns the message of the FileError that the action throws, or "" if it throws nothing.
 template <typename Action>
 std::string complaintOf(const Action& action) {
   try {
@@ -24,7 +24,7 @@ std::string complaintOf(const Action& action) {
   }
 }
 
-/// Expects a complaint that begins with the file's name and contains every piece.
+/// Expects a message that begins with the name of the file and contains every piece.
 inline void expectComplaint(const std::string& complaint, const std::filesystem::path& path,
                             const std::vector<std::string>& pieces) {
   EXPECT_EQ(complaint.rfind(path.string() + ": ", 0), 0u) << complaint;
@@ -32,7 +32,7 @@ inline void expectComplaint(const std::string& complaint, const std::filesystem:
     EXPECT_NE(complaint.find(piece), std::string::npos) << piece << " in: " << complaint;
 }
 
-/// One to three changes: cut off, a byte or a bit changed, a character put in, bytes taken out.
+/// Returns the bytes after one to three changes: cut off, a byte or a bit changed, a character inserted, bytes removed.
 inline std::string mutated(std::string bytes, Random& random) {
   const auto below = [&random](std::size_t n) { return static_cast<std::size_t>(random.below(n)); };
   for (std::size_t change = 1 + below(3); change > 0 && !bytes.empty(); --change) {
@@ -57,8 +57,8 @@ inline std::string mutated(std::string bytes, Random& random) {
   return bytes;
 }
 
-/// Gives `read` thousands of mutations of good files. Anything that it throws but a FileError fails the test, as does
-/// a reader that refuses few or all of them.
+/// Calls `read` with thousands of mutations of good files. The test fails if `read` throws anything except a FileError,
+/// or if it refuses few or all of them.
 template <typename Read>
 void expectMutationsReadOrRefused(const std::vector<std::string>& good, const Read& read) {
   constexpr int kRounds = 6000;

@@ -12,7 +12,7 @@
 
 namespace gaussmap::test {
 
-/// A fresh directory that goes away with the object.
+/// A new directory that is deleted with the object.
 class TemporaryDirectory {
  public:
   TemporaryDirectory() {
@@ -32,7 +32,7 @@ class TemporaryDirectory {
 
   /// Writes a file and returns its path.
   std::filesystem::path write(const std::string& name, const std::string& bytes) const {
-    std::filesystem::remove(path_ / name);  // a file cut to nothing and rewritten is waited for by some file systems
+    std::filesystem::remove(path_ / name);  // some file systems wait for the disk after truncation and rewriting
     std::ofstream stream(path_ / name, std::ios::binary);
     stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     if (!stream.flush()) throw std::runtime_error("cannot write " + name);

@@ -9,7 +9,7 @@
 
 namespace gaussmap::test {
 
-/// Equal bits: 0.0 and -0.0 differ, equal NaNs do not.
+/// Returns true if the bits are equal: 0.0 and -0.0 differ, equal NaNs do not.
 template <typename A>
 bool sameBits(const A& a, const A& b) {
   return a.size() == b.size() &&
@@ -22,7 +22,7 @@ bool sameGaussian(const Gaussian<D>& a, const Gaussian<D>& b) {
   return sameBits(a.mean, b.mean) && sameBits(a.cov, b.cov) && std::memcmp(&a.weight, &b.weight, sizeof a.weight) == 0;
 }
 
-/// Which cell holds which Gaussians; a list that says 'one each' and no list mean the same.
+/// Compares which cell holds which Gaussians. A list with one Gaussian per cell and an empty list mean the same.
 template <int D>
 bool sameRanges(const GaussianMap<D>& a, const GaussianMap<D>& b, int s) {
   for (std::size_t cell = 0; cell < a.cellCount(s); ++cell)
@@ -32,7 +32,7 @@ bool sameRanges(const GaussianMap<D>& a, const GaussianMap<D>& b, int s) {
   return true;
 }
 
-/// Everything a map holds, bit by bit. A success or the first part that differs.
+/// Compares everything in two maps, bit by bit. Returns success, or the first thing that differs.
 template <int D>
 testing::AssertionResult sameMap(const GaussianMap<D>& a, const GaussianMap<D>& b) {
   if (!(a.options() == b.options())) return testing::AssertionFailure() << "options";

@@ -24,12 +24,13 @@ GaussianMap<D> refined(const GaussianMap<D>& map) {
   return refine<D>(map, PerCell{2.5}).map;
 }
 
-/// A map small enough for thousands of loads, with several tiles at two scales and several Gaussians in its cells.
+/// Returns a map that is small enough for thousands of loads, with several tiles at two scales and several Gaussians
+/// per cell.
 inline GaussianMapOctree smallMap() {
   return refined<3>(build<3>(randomCloud<3>(150, 31), {0.1, 4, 3, 0.0}));
 }
 
-/// SQL on a database, as a user of the sqlite3 shell would give it; the last row of the answer.
+/// Runs SQL on a database like the sqlite3 shell. Returns the last row of the answer.
 inline std::vector<std::string> shell(const std::filesystem::path& path, const std::string& sql) {
   sqlite3* handle = nullptr;
   EXPECT_EQ(sqlite3_open(path.c_str(), &handle), SQLITE_OK);
@@ -47,7 +48,7 @@ inline std::vector<std::string> shell(const std::filesystem::path& path, const s
   return row;
 }
 
-/// Files in a directory of their own.
+/// Tests with files in their own directory.
 class MapFile : public testing::Test {
  protected:
   template <int D>

@@ -8,7 +8,7 @@
 
 namespace gaussmap::test {
 
-/// What `gzip` makes of these bytes.
+/// Returns these bytes as `gzip` compresses them.
 inline std::string gzipped(std::string bytes) {
   z_stream stream{};
   if (deflateInit2(&stream, 9, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY) != Z_OK) throw std::runtime_error("zlib");

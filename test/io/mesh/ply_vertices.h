@@ -10,13 +10,13 @@
 
 namespace gaussmap::test {
 
-/// The vertices of a binary little-endian PLY file, read as its header says and nothing else.
+/// The vertices of a binary little-endian PLY file. The reader uses only the header.
 struct PlyVertices {
   std::vector<std::string> names;                     ///< in the order of the file
-  std::map<std::string, std::vector<double>> values;  ///< of every property
+  std::map<std::string, std::vector<double>> values;  ///< the values of every property
   std::vector<std::string> comments;
   std::size_t count = 0, faces = 0;
-  std::size_t bytes_left = 0;  ///< behind the vertices
+  std::size_t bytes_left = 0;  ///< number of bytes behind the vertices
 
   double at(const std::string& name, std::size_t i) const { return values.at(name).at(i); }
 };

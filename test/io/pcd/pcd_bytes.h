@@ -8,7 +8,7 @@
 
 #include "gaussmap/io/pcd/pcd_reader.h"
 
-// PCD files as the tests need them, written without the library.
+// Writes PCD files for tests without the library.
 namespace gaussmap::test {
 
 template <typename T>
@@ -18,7 +18,7 @@ std::string bytesOf(T value) {
   return bytes;
 }
 
-/// The header of n points with float x y z.
+/// Returns the header of n points with float x y z.
 inline std::string xyzHeader(std::size_t points, const std::string& data) {
   return "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n"
          "WIDTH " +
@@ -26,7 +26,7 @@ inline std::string xyzHeader(std::size_t points, const std::string& data) {
          data + "\n";
 }
 
-/// A valid LZF stream that compresses nothing: runs of at most 32 bytes, each behind its length - 1.
+/// Returns a valid LZF stream that compresses nothing: runs of at most 32 bytes, each after its length - 1.
 inline std::string lzfLiterals(const std::string& bytes) {
   std::string stream;
   for (std::size_t first = 0; first < bytes.size(); first += 32) {
@@ -37,14 +37,14 @@ inline std::string lzfLiterals(const std::string& bytes) {
   return stream;
 }
 
-/// The body of DATA binary_compressed.
+/// Returns the body of DATA binary_compressed.
 inline std::string compressedBody(const std::string& bytes) {
   const std::string stream = lzfLiterals(bytes);
   return bytesOf(static_cast<std::uint32_t>(stream.size())) + bytesOf(static_cast<std::uint32_t>(bytes.size())) +
          stream;
 }
 
-/// All points of a file, axis by axis.
+/// Returns all points of a file, axis by axis.
 inline std::vector<std::vector<double>> readAll(const PcdReader& reader) {
   std::vector<std::vector<double>> axes(3);
   PointBlock<3> block;

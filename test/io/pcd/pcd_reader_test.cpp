@@ -212,7 +212,7 @@ TEST(PcdReader, CanBeMoved) {
   EXPECT_EQ(readAll(moved), kTwoPoints);
 }
 
-// Any field of a random file with the bytes of one element and the text that stands for it.
+// A random field of a random file, with the bytes of one element and the text that represents it.
 struct RandomField {
   std::string name;
   char type;

@@ -19,7 +19,8 @@ Grid<3> grid() {
   return Grid<3>({0.5, 2, 3, 0.0});
 }
 
-/// A finest cell with a cluster of one point in its centre; clusters above it are begun where there are none.
+/// Adds a finest cell with a cluster of one point at its centre. Cells above it get a cluster if they have no cluster
+/// yet.
 std::uint32_t occupy(Cells& cells, const CellKey<3>& key) {
   std::uint32_t child = cells.findOrInsert(key);
   const std::uint32_t finest = child;
@@ -63,7 +64,7 @@ TEST(OnlineCells, KeepEveryAncestorAsLongAsACellIsUnderItWhateverComesAndGoes) {
     }
     EXPECT_EQ(children, scale > 0 ? cells.size(scale - 1) : 0u);
   }
-  // Weights add up at every scale once they are summed anew.
+  // The weights of every scale add up once they are summed again.
   double weight = 0.0;
   for (std::uint32_t i = 0; i < cells.slots(2); ++i) {
     if (!cells.cell(i, 2).alive) continue;

@@ -22,8 +22,8 @@ inline World worldOf(const std::vector<detail::Rectangle>& rectangles) {
   return World(mesh);
 }
 
-/// Looks from the origin at a wall at x = 10.1 with boxes in front of it at x = 5.1, their right edges at these y. No
-/// noise.
+/// A lidar without noise at the origin. boxScan() shows it a wall at x = 10.1 with boxes in front of it, at x = 5.1 and
+/// with their right edges at the given y.
 inline LidarOptions wallLidar() {
   LidarOptions lidar;
   lidar.rings = 40;
@@ -51,7 +51,7 @@ inline OnlineOptions wallOptions() {
   return options;
 }
 
-/// A few scans of the hall, coarser than usual.
+/// Returns a few scans of the hall, with fewer beams than usual.
 inline std::vector<Scan> hallScans(int count) {
   SimulationOptions how;
   how.scans = count;
