@@ -24,25 +24,25 @@ namespace {
 ///
 /// Returns fewer than k centres if the input has fewer than k different means.
 template <int D>
-std::vector<Gaussian<D>> drawReferences(const KLProblem<D>& problem, std::size_t k, Random& random) {
-  const Gaussian<D> all = problem.oneCluster().references.front();
+std::vector<Gaussian<D>> drawCentres(const KLProblem<D>& problem, std::size_t k, Random& random) {
+  const Gaussian<D> all = problem.oneCluster().centres.front();
   const Matrix<D> whitening = SmallCholesky<D>(all.cov).whitening;
-  std::vector<Gaussian<D>> references;
+  std::vector<Gaussian<D>> centres;
   std::vector<double> nearest(problem.size(), std::numeric_limits<double>::infinity());  // squared distances
   std::vector<double> cumulated(problem.size());
-  while (references.size() < k) {
+  while (centres.size() < k) {
     double sum = 0.0;
     for (std::size_t j = 0; j < problem.size(); ++j)
-      cumulated[j] = sum += problem.datum(j).weight * (references.empty() ? 1.0 : nearest[j]);
+      cumulated[j] = sum += problem.input(j).weight * (centres.empty() ? 1.0 : nearest[j]);
     if (!(sum > 0.0)) break;
     const auto drawn = std::upper_bound(cumulated.begin(), cumulated.end() - 1, random.uniform() * sum);
-    Gaussian<D> reference = problem.datum(static_cast<std::size_t>(drawn - cumulated.begin()));
-    reference.cov = all.cov;
+    Gaussian<D> centre = problem.input(static_cast<std::size_t>(drawn - cumulated.begin()));
+    centre.cov = all.cov;
     for (std::size_t j = 0; j < problem.size(); ++j)
-      nearest[j] = std::min(nearest[j], (whitening * (problem.datum(j).mean - reference.mean)).squaredNorm());
-    references.push_back(reference);
+      nearest[j] = std::min(nearest[j], (whitening * (problem.input(j).mean - centre.mean)).squaredNorm());
+    centres.push_back(centre);
   }
-  return references;
+  return centres;
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ KLClustering<D> KLKMeans<D>::fit(const std::vector<Gaussian<D>>& data) const {
   const auto k = static_cast<std::size_t>(options_.k);
   if (k >= data.size()) return problem.eachItsOwn();
   Random random(options_.seed);
-  KLPartition<D> partition = problem.run(drawReferences(problem, k, random), options_);
+  KLPartition<D> partition = problem.run(drawCentres(problem, k, random), options_);
   const int swaps = swapLoop(problem, options_, random, partition);
   KLClustering<D> clustering = problem.finish(partition);
   clustering.swaps = swaps;
@@ -67,28 +67,28 @@ KLClustering<D> KLKMeans<D>::fit(const std::vector<Gaussian<D>>& data) const {
 
 template <int D>
 KLClustering<D> KLKMeans<D>::run(const std::vector<Gaussian<D>>& data,
-                                 const std::vector<Gaussian<D>>& initial_references) const {
+                                 const std::vector<Gaussian<D>>& initial_centres) const {
   const KLProblem<D> problem(data);
   if (data.empty()) return {};
-  if (initial_references.empty()) throw std::invalid_argument("k-means needs at least one initial cluster centre");
-  std::vector<Gaussian<D>> references = initial_references;
-  for (Gaussian<D>& w : references) w.mean -= problem.centre();
-  return problem.finish(problem.run(std::move(references), options_));
+  if (initial_centres.empty()) throw std::invalid_argument("k-means needs at least one initial cluster centre");
+  std::vector<Gaussian<D>> centres = initial_centres;
+  for (Gaussian<D>& w : centres) w.mean -= problem.centre();
+  return problem.finish(problem.run(std::move(centres), options_));
 }
 
 template <int D>
-KLClustering<D> insertCluster(const std::vector<Gaussian<D>>& data, const std::vector<Gaussian<D>>& current_references,
+KLClustering<D> insertCluster(const std::vector<Gaussian<D>>& data, const std::vector<Gaussian<D>>& current_centres,
                               const KLKMeansOptions& options) {
   checkOptions(options);
   const KLProblem<D> problem(data);
-  if (current_references.size() + 1 >= data.size()) return problem.eachItsOwn();
-  if (current_references.empty()) return problem.finish(problem.oneCluster());
-  std::vector<Gaussian<D>> references = current_references;
-  for (Gaussian<D>& w : references) w.mean -= problem.centre();
+  if (current_centres.size() + 1 >= data.size()) return problem.eachItsOwn();
+  if (current_centres.empty()) return problem.finish(problem.oneCluster());
+  std::vector<Gaussian<D>> centres = current_centres;
+  for (Gaussian<D>& w : centres) w.mean -= problem.centre();
   // The current centres with the Gaussians nearest to them. Line 9 looks here for the Gaussian of largest distortion.
   KLPartition<D> current;
-  current.references = std::move(references);
-  problem.assign(current.references, current.assignment);
+  current.centres = std::move(centres);
+  problem.assign(current.centres, current.assignment);
   current.labels = current.assignment.labels;
   Random random(options.seed);
   KLPartition<D> partition = insertSeed(problem, current, options);

@@ -18,7 +18,7 @@ constexpr Eigen::Index kBlock = 256;
 
 /// The nearest cluster centres so far, for a block of Gaussians. Labels are doubles because the loops below are
 /// vectorised.
-struct NearestReferences {
+struct NearestCentres {
   double distance[kBlock], label[kBlock];
 
   void clear(Eigen::Index rows) {
@@ -30,8 +30,8 @@ struct NearestReferences {
 /// Compares rows of X with column c of Y. X is rows x F and starts at `x`; its columns are `stride` apart. The loops
 /// are plain because the matrices of most cells are too small for a general matrix product to be faster.
 template <int D>
-void compare(const double* x, Eigen::Index stride, Eigen::Index rows, const typename KLProblem<D>::References& y,
-             Eigen::Index c, NearestReferences& nearest) {
+void compare(const double* x, Eigen::Index stride, Eigen::Index rows, const typename KLProblem<D>::Centres& y,
+             Eigen::Index c, NearestCentres& nearest) {
   const Eigen::Matrix<double, KLProblem<D>::kFeatures, 1> weights = y.col(c);
   const auto label = static_cast<double>(c);
   for (Eigen::Index j = 0; j < rows; ++j) {
@@ -56,17 +56,17 @@ void writeDataFeatures(const Vector<D>& mean, const Matrix<D>& cov, Row&& row) {
 
 /// Returns y_w of every cluster centre, F x k.
 template <int D>
-typename KLProblem<D>::References referenceFeatures(const std::vector<Gaussian<D>>& references) {
-  typename KLProblem<D>::References features(KLProblem<D>::kFeatures, static_cast<Eigen::Index>(references.size()));
-  for (std::size_t c = 0; c < references.size(); ++c) {
-    const SmallCholesky<D> factor(references[c].cov);
-    if (!factor.positive || !references[c].mean.allFinite())
+typename KLProblem<D>::Centres centreFeatures(const std::vector<Gaussian<D>>& centres) {
+  typename KLProblem<D>::Centres features(KLProblem<D>::kFeatures, static_cast<Eigen::Index>(centres.size()));
+  for (std::size_t c = 0; c < centres.size(); ++c) {
+    const SmallCholesky<D> factor(centres[c].cov);
+    if (!factor.positive || !centres[c].mean.allFinite())
       throw std::domain_error("cluster centre " + std::to_string(c) +
                               ": the mean is not finite or the covariance is not positive definite");
     const Matrix<D> inverse = factor.inverse();
-    const Vector<D> information = inverse * references[c].mean;
+    const Vector<D> information = inverse * centres[c].mean;
     auto column = features.col(static_cast<Eigen::Index>(c));
-    column(0) = 0.5 * (references[c].mean.dot(information) + factor.logDeterminant());
+    column(0) = 0.5 * (centres[c].mean.dot(information) + factor.logDeterminant());
     int slot = 1;
     for (int i = 0; i < D; ++i) column(slot++) = -information(i);
     for (int i = 0; i < D; ++i)
@@ -76,11 +76,11 @@ typename KLProblem<D>::References referenceFeatures(const std::vector<Gaussian<D
 }
 
 template <int D>
-void checkMeanAndWeight(const Gaussian<D>& datum, std::size_t index) {
-  if (!(datum.weight > 0.0 && std::isfinite(datum.weight)))
-    throw std::invalid_argument("Gaussian " + std::to_string(index) + ": weight " + numberText(datum.weight) +
+void checkMeanAndWeight(const Gaussian<D>& gaussian, std::size_t index) {
+  if (!(gaussian.weight > 0.0 && std::isfinite(gaussian.weight)))
+    throw std::invalid_argument("Gaussian " + std::to_string(index) + ": weight " + numberText(gaussian.weight) +
                                 " is not positive and finite");
-  if (!datum.mean.allFinite())
+  if (!gaussian.mean.allFinite())
     throw std::invalid_argument("Gaussian " + std::to_string(index) + ": the mean is not finite");
 }
 
@@ -126,18 +126,18 @@ KLProblem<D>::KLProblem(const std::vector<Gaussian<D>>& data) : data_(data) {
 }
 
 template <int D>
-void KLProblem<D>::assign(const std::vector<Gaussian<D>>& references, KLAssignment<D>& assignment) const {
-  References features = referenceFeatures<D>(references);
-  const Eigen::Index known = assignment.references.cols();
-  std::vector<char> changed(references.size(), 1);
-  std::size_t changes = references.size();
+void KLProblem<D>::assign(const std::vector<Gaussian<D>>& centres, KLAssignment<D>& assignment) const {
+  Centres features = centreFeatures<D>(centres);
+  const Eigen::Index known = assignment.centres.cols();
+  std::vector<char> changed(centres.size(), 1);
+  std::size_t changes = centres.size();
   for (Eigen::Index c = 0; c < std::min(known, features.cols()); ++c)
-    if (features.col(c) == assignment.references.col(c)) {
+    if (features.col(c) == assignment.centres.col(c)) {
       changed[static_cast<std::size_t>(c)] = 0;
       --changes;
     }
-  const bool all = known > features.cols() || 2 * changes > references.size();
-  assignment.references.swap(features);
+  const bool all = known > features.cols() || 2 * changes > centres.size();
+  assignment.centres.swap(features);
   if (all)
     assignAll(assignment);
   else
@@ -149,12 +149,12 @@ void KLProblem<D>::assignAll(KLAssignment<D>& assignment) const {
   const auto n = static_cast<Eigen::Index>(size());
   assignment.distances.resize(size());
   assignment.labels.resize(size());
-  NearestReferences nearest;
+  NearestCentres nearest;
   for (Eigen::Index first = 0; first < n; first += kBlock) {
     const Eigen::Index rows = std::min(kBlock, n - first);
     nearest.clear(rows);
-    for (Eigen::Index c = 0; c < assignment.references.cols(); ++c)
-      compare<D>(features_.data() + first, n, rows, assignment.references, c, nearest);
+    for (Eigen::Index c = 0; c < assignment.centres.cols(); ++c)
+      compare<D>(features_.data() + first, n, rows, assignment.centres, c, nearest);
     std::copy(nearest.distance, nearest.distance + rows, assignment.distances.begin() + first);
     std::transform(nearest.label, nearest.label + rows, assignment.labels.begin() + first,
                    [](double label) { return static_cast<int>(label); });
@@ -163,8 +163,8 @@ void KLProblem<D>::assignAll(KLAssignment<D>& assignment) const {
 
 template <int D>
 void KLProblem<D>::assignAgain(KLAssignment<D>& assignment, const std::vector<char>& changed) const {
-  const auto n = static_cast<Eigen::Index>(size()), k = assignment.references.cols();
-  NearestReferences nearest;
+  const auto n = static_cast<Eigen::Index>(size()), k = assignment.centres.cols();
+  NearestCentres nearest;
   double x[kFeatures * kBlock];  // Gaussians whose cluster centre has moved
   for (Eigen::Index first = 0; first < n; first += kBlock) {
     const Eigen::Index rows = std::min(kBlock, n - first);
@@ -177,7 +177,7 @@ void KLProblem<D>::assignAgain(KLAssignment<D>& assignment, const std::vector<ch
     std::copy(labels, labels + rows, nearest.label);
     for (Eigen::Index c = 0; c < k; ++c)
       if (changed[static_cast<std::size_t>(c)])
-        compare<D>(features_.data() + first, n, rows, assignment.references, c, nearest);
+        compare<D>(features_.data() + first, n, rows, assignment.centres, c, nearest);
     for (Eigen::Index j = 0; j < rows; ++j) {
       distances[j] = nearest.distance[j];
       labels[j] = static_cast<int>(nearest.label[j]);
@@ -185,7 +185,7 @@ void KLProblem<D>::assignAgain(KLAssignment<D>& assignment, const std::vector<ch
     for (int f = 1; f < kFeatures; ++f)
       for (Eigen::Index m = 0; m < moves; ++m) x[f * kBlock + m] = features_(first + moved[m], f);
     nearest.clear(moves);
-    for (Eigen::Index c = 0; c < k; ++c) compare<D>(x, kBlock, moves, assignment.references, c, nearest);
+    for (Eigen::Index c = 0; c < k; ++c) compare<D>(x, kBlock, moves, assignment.centres, c, nearest);
     for (Eigen::Index m = 0; m < moves; ++m) {
       distances[moved[m]] = nearest.distance[m];
       labels[moved[m]] = static_cast<int>(nearest.label[m]);
@@ -195,24 +195,24 @@ void KLProblem<D>::assignAgain(KLAssignment<D>& assignment, const std::vector<ch
 
 template <int D>
 Eigen::VectorXd KLProblem<D>::ownDistances(const KLPartition<D>& partition) const {
-  const References reference_features = referenceFeatures<D>(partition.references);
+  const Centres centre_features = centreFeatures<D>(partition.centres);
   Eigen::VectorXd distances(constants_.size());
   for (Eigen::Index j = 0; j < distances.size(); ++j) {
     const int label = partition.labels[static_cast<std::size_t>(j)];
-    distances(j) = std::max(0.0, features_.row(j).dot(reference_features.col(label)) + constants_(j));
+    distances(j) = std::max(0.0, features_.row(j).dot(centre_features.col(label)) + constants_(j));
   }
   return distances;
 }
 
 template <int D>
-Eigen::MatrixXd KLProblem<D>::distancesBetween(const std::vector<Gaussian<D>>& references) {
-  const auto k = static_cast<Eigen::Index>(references.size());
+Eigen::MatrixXd KLProblem<D>::distancesBetween(const std::vector<Gaussian<D>>& centres) {
+  const auto k = static_cast<Eigen::Index>(centres.size());
   Features features(k, kFeatures);
   for (Eigen::Index c = 0; c < k; ++c) {
-    const Gaussian<D>& w = references[static_cast<std::size_t>(c)];
+    const Gaussian<D>& w = centres[static_cast<std::size_t>(c)];
     writeDataFeatures<D>(w.mean, w.cov, features.row(c));
   }
-  Eigen::MatrixXd distances = features * referenceFeatures<D>(references);
+  Eigen::MatrixXd distances = features * centreFeatures<D>(centres);
   // KL(u || u) = 0 gives the part of each row that depends on u alone.
   const Eigen::VectorXd own = distances.diagonal();
   distances.colwise() -= own;
@@ -221,19 +221,19 @@ Eigen::MatrixXd KLProblem<D>::distancesBetween(const std::vector<Gaussian<D>>& r
 
 template <int D>
 void KLProblem<D>::update(KLPartition<D>& partition) const {
-  std::vector<Gaussian<D>>& references = partition.references;
-  for (Gaussian<D>& w : references) w = {Vector<D>::Zero(), Matrix<D>::Zero(), 0.0};
-  partition.counts.assign(references.size(), 0);
+  std::vector<Gaussian<D>>& centres = partition.centres;
+  for (Gaussian<D>& w : centres) w = {Vector<D>::Zero(), Matrix<D>::Zero(), 0.0};
+  partition.counts.assign(centres.size(), 0);
   for (std::size_t j = 0; j < size(); ++j) {
     const auto label = static_cast<std::size_t>(partition.labels[j]);
-    references[label].weight += data_[j].weight;
-    references[label].mean += data_[j].weight * (data_[j].mean - centre_);
+    centres[label].weight += data_[j].weight;
+    centres[label].mean += data_[j].weight * (data_[j].mean - centre_);
     ++partition.counts[label];
   }
-  for (Gaussian<D>& w : references)
+  for (Gaussian<D>& w : centres)
     if (w.weight > 0.0) w.mean /= w.weight;  // eq. (9)
   for (std::size_t j = 0; j < size(); ++j) {
-    Gaussian<D>& w = references[static_cast<std::size_t>(partition.labels[j])];
+    Gaussian<D>& w = centres[static_cast<std::size_t>(partition.labels[j])];
     const Vector<D> spread = data_[j].mean - centre_ - w.mean;
     w.cov += data_[j].weight * (data_[j].cov + spread * spread.transpose());
   }
@@ -241,17 +241,17 @@ void KLProblem<D>::update(KLPartition<D>& partition) const {
   // sum alpha_j KL(z_j || w) = (alpha_w ln |Sigma_w| - sum alpha_j ln |Sigma_j|) / 2.
   double weighted_log_determinants = 0.0;
   std::size_t kept = 0;
-  std::vector<int> new_label(references.size());
-  for (std::size_t c = 0; c < references.size(); ++c) {
+  std::vector<int> new_label(centres.size());
+  for (std::size_t c = 0; c < centres.size(); ++c) {
     new_label[c] = static_cast<int>(kept);
     if (partition.counts[c] == 0) continue;
-    references[c].cov /= references[c].weight;  // eq. (10), about the mean
-    weighted_log_determinants += references[c].weight * SmallCholesky<D>(references[c].cov).logDeterminant();
-    references[kept] = references[c];
+    centres[c].cov /= centres[c].weight;  // eq. (10), about the mean
+    weighted_log_determinants += centres[c].weight * SmallCholesky<D>(centres[c].cov).logDeterminant();
+    centres[kept] = centres[c];
     partition.counts[kept++] = partition.counts[c];
   }
-  if (kept < references.size()) {
-    references.resize(kept);
+  if (kept < centres.size()) {
+    centres.resize(kept);
     partition.counts.resize(kept);
     for (int& label : partition.labels) label = new_label[static_cast<std::size_t>(label)];
   }
@@ -259,15 +259,15 @@ void KLProblem<D>::update(KLPartition<D>& partition) const {
 }
 
 template <int D>
-KLPartition<D> KLProblem<D>::run(std::vector<Gaussian<D>> references, const KLKMeansOptions& options,
+KLPartition<D> KLProblem<D>::run(std::vector<Gaussian<D>> centres, const KLKMeansOptions& options,
                                  KLAssignment<D> earlier) const {
   KLPartition<D> partition;
-  partition.references = std::move(references);
+  partition.centres = std::move(centres);
   partition.assignment = std::move(earlier);
   partition.converged = false;
   double distortion_before = std::numeric_limits<double>::infinity();
   while (!partition.converged && partition.iterations < options.max_iterations) {
-    assign(partition.references, partition.assignment);
+    assign(partition.centres, partition.assignment);
     partition.converged = partition.assignment.labels == partition.labels;
     if (partition.converged) break;
     partition.labels = partition.assignment.labels;
@@ -282,7 +282,7 @@ KLPartition<D> KLProblem<D>::run(std::vector<Gaussian<D>> references, const KLKM
 template <int D>
 KLPartition<D> KLProblem<D>::oneCluster() const {
   KLPartition<D> partition;
-  partition.references.resize(1);
+  partition.centres.resize(1);
   partition.labels.assign(size(), 0);
   update(partition);
   return partition;
@@ -291,7 +291,7 @@ KLPartition<D> KLProblem<D>::oneCluster() const {
 template <int D>
 KLClustering<D> KLProblem<D>::eachItsOwn() const {
   KLClustering<D> clustering;
-  clustering.references = data_;
+  clustering.centres = data_;
   for (std::size_t j = 0; j < size(); ++j) clustering.labels.push_back(static_cast<int>(j));
   return clustering;
 }
@@ -303,10 +303,10 @@ KLClustering<D> KLProblem<D>::finish(const KLPartition<D>& partition) const {
   clustering.distortion = partition.distortion;
   clustering.iterations = partition.iterations;
   clustering.converged = partition.converged;
-  std::vector<std::vector<Gaussian<D>>> members(partition.references.size());
+  std::vector<std::vector<Gaussian<D>>> members(partition.centres.size());
   for (std::size_t c = 0; c < members.size(); ++c) members[c].reserve(static_cast<std::size_t>(partition.counts[c]));
   for (std::size_t j = 0; j < size(); ++j) members[static_cast<std::size_t>(partition.labels[j])].push_back(data_[j]);
-  for (const std::vector<Gaussian<D>>& parts : members) clustering.references.push_back(merge(parts));
+  for (const std::vector<Gaussian<D>>& parts : members) clustering.centres.push_back(merge(parts));
   return clustering;
 }
 

@@ -19,15 +19,15 @@ inline constexpr int kKLFeatures = 1 + D + D*(D + 1) / 2;
 /// Gaussian has not moved, only a centre that has moved can be nearer.
 template <int D>
 struct KLAssignment {
-  Eigen::Matrix<double, kKLFeatures<D>, Eigen::Dynamic> references;  // y_w of each centre
-  std::vector<double> distances;                                     // x_z . y_w of the nearest centre
+  Eigen::Matrix<double, kKLFeatures<D>, Eigen::Dynamic> centres;  // y_w of each centre
+  std::vector<double> distances;                                  // x_z . y_w of the nearest centre
   std::vector<int> labels;
 };
 
 /// A partition while k-means works on it. Means are relative to the centre of the problem.
 template <int D>
 struct KLPartition {
-  std::vector<Gaussian<D>> references;
+  std::vector<Gaussian<D>> centres;
   std::vector<int> labels;
   KLAssignment<D> assignment;  // the last assignment; its centres can be older
   std::vector<int> counts;     // members per cluster
@@ -47,7 +47,7 @@ class KLProblem {
  public:
   static constexpr int kFeatures = kKLFeatures<D>;
   using Features = Eigen::Matrix<double, Eigen::Dynamic, kFeatures>;  // n x F, one column per feature
-  using References = decltype(KLAssignment<D>::references);           // F x k
+  using Centres = decltype(KLAssignment<D>::centres);                 // F x k
 
   /// Keeps a C++ reference to `data`. Throws like KLKMeans.
   explicit KLProblem(const std::vector<Gaussian<D>>& data);
@@ -56,20 +56,20 @@ class KLProblem {
   const Vector<D>& centre() const { return centre_; }
   const Eigen::VectorXd& weights() const { return weights_; }
   /// Returns input Gaussian j with its mean relative to the centre.
-  Gaussian<D> datum(std::size_t j) const { return {data_[j].mean - centre_, data_[j].cov, data_[j].weight}; }
+  Gaussian<D> input(std::size_t j) const { return {data_[j].mean - centre_, data_[j].cov, data_[j].weight}; }
 
   /// Finds the nearest of these cluster centres (means relative to the centre of the problem). Ties go to the smaller
   /// label. `assignment` can hold any earlier assignment of the same problem. This saves time and does not change the
   /// result.
-  void assign(const std::vector<Gaussian<D>>& references, KLAssignment<D>& assignment) const;
+  void assign(const std::vector<Gaussian<D>>& centres, KLAssignment<D>& assignment) const;
   /// Returns the distance, eq. (8), of every input Gaussian to the centre of its cluster.
   Eigen::VectorXd ownDistances(const KLPartition<D>& partition) const;
   /// Returns KL(u || v) of all pairs of cluster centres, k x k.
-  static Eigen::MatrixXd distancesBetween(const std::vector<Gaussian<D>>& references);
+  static Eigen::MatrixXd distancesBetween(const std::vector<Gaussian<D>>& centres);
 
   /// Runs k-means from these cluster centres (means relative to the centre of the problem). It is faster if few of them
   /// differ from those of `earlier`.
-  KLPartition<D> run(std::vector<Gaussian<D>> references, const KLKMeansOptions& options,
+  KLPartition<D> run(std::vector<Gaussian<D>> centres, const KLKMeansOptions& options,
                      KLAssignment<D> earlier = {}) const;
   /// Returns the partition with one cluster.
   KLPartition<D> oneCluster() const;

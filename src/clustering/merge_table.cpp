@@ -147,9 +147,9 @@ template <int D>
 Vector<D> middleOf(const std::vector<Gaussian<D>>& data) {
   if (data.empty()) return Vector<D>::Zero();
   Vector<D> low = data.front().mean, high = low;
-  for (const Gaussian<D>& datum : data) {
-    low = low.cwiseMin(datum.mean);
-    high = high.cwiseMax(datum.mean);
+  for (const Gaussian<D>& gaussian : data) {
+    low = low.cwiseMin(gaussian.mean);
+    high = high.cwiseMax(gaussian.mean);
   }
   return 0.5 * low + 0.5 * high;
 }

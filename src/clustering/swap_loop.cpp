@@ -17,7 +17,7 @@ struct Worst {
 };
 
 template <int D>
-Worst worstDatum(const KLProblem<D>& problem, const KLPartition<D>& partition) {
+Worst worstGaussian(const KLProblem<D>& problem, const KLPartition<D>& partition) {
   const Eigen::VectorXd distances = problem.ownDistances(partition);
   Eigen::Index index = 0;  // the first one if several are equal
   distances.maxCoeff(&index);
@@ -27,8 +27,8 @@ Worst worstDatum(const KLProblem<D>& problem, const KLPartition<D>& partition) {
 
 template <int D>
 Gaussian<D> seedAt(const KLProblem<D>& problem, const KLPartition<D>& partition, const Worst& worst, ClusterSeed rule) {
-  Gaussian<D> seed = problem.datum(worst.index);
-  if (rule == ClusterSeed::ParentCovariance) seed.cov = partition.references[worst.cluster].cov;
+  Gaussian<D> seed = problem.input(worst.index);
+  if (rule == ClusterSeed::ParentCovariance) seed.cov = partition.centres[worst.cluster].cov;
   return seed;
 }
 
@@ -39,8 +39,8 @@ struct ClosestPair {
 };
 
 template <int D>
-ClosestPair closestPair(const std::vector<Gaussian<D>>& references) {
-  const Eigen::MatrixXd distances = KLProblem<D>::distancesBetween(references);
+ClosestPair closestPair(const std::vector<Gaussian<D>>& centres) {
+  const Eigen::MatrixXd distances = KLProblem<D>::distancesBetween(centres);
   ClosestPair pair{0, 1, std::numeric_limits<double>::infinity()};
   for (Eigen::Index u = 0; u < distances.rows(); ++u)
     for (Eigen::Index v = 0; v < distances.cols(); ++v)
@@ -60,10 +60,10 @@ ClosestPair closestPair(const std::vector<Gaussian<D>>& references) {
 /// it is tried again and again. Most of the benefit of the swaps comes from the random draw.
 template <int D>
 std::size_t leastNeeded(const KLPartition<D>& partition, const Worst& worst, Random& random) {
-  const ClosestPair pair = closestPair(partition.references);
+  const ClosestPair pair = closestPair(partition.centres);
   if (worst.distance < pair.distance)
     return partition.counts[pair.second] < partition.counts[pair.first] ? pair.second : pair.first;
-  const std::size_t drawn = random.below(partition.references.size() - 1);
+  const std::size_t drawn = random.below(partition.centres.size() - 1);
   return drawn < worst.cluster ? drawn : drawn + 1;
 }
 
@@ -72,22 +72,22 @@ std::size_t leastNeeded(const KLPartition<D>& partition, const Worst& worst, Ran
 template <int D>
 KLPartition<D> insertSeed(const KLProblem<D>& problem, const KLPartition<D>& partition,
                           const KLKMeansOptions& options) {
-  std::vector<Gaussian<D>> references = partition.references;
-  references.push_back(seedAt(problem, partition, worstDatum(problem, partition), options.seed_rule));
-  return problem.run(std::move(references), options, partition.assignment);
+  std::vector<Gaussian<D>> centres = partition.centres;
+  centres.push_back(seedAt(problem, partition, worstGaussian(problem, partition), options.seed_rule));
+  return problem.run(std::move(centres), options, partition.assignment);
 }
 
 template <int D>
 int swapLoop(const KLProblem<D>& problem, const KLKMeansOptions& options, Random& random, KLPartition<D>& partition) {
   int swaps = 0;
-  for (; swaps < options.max_swaps && partition.references.size() > 1; ++swaps) {
-    const Worst worst = worstDatum(problem, partition);
-    std::vector<Gaussian<D>> references = partition.references;
-    references[leastNeeded(partition, worst, random)] = seedAt(problem, partition, worst, options.seed_rule);
-    KLPartition<D> swapped = problem.run(std::move(references), options, partition.assignment);
+  for (; swaps < options.max_swaps && partition.centres.size() > 1; ++swaps) {
+    const Worst worst = worstGaussian(problem, partition);
+    std::vector<Gaussian<D>> centres = partition.centres;
+    centres[leastNeeded(partition, worst, random)] = seedAt(problem, partition, worst, options.seed_rule);
+    KLPartition<D> swapped = problem.run(std::move(centres), options, partition.assignment);
     swapped.iterations += partition.iterations;
     const bool accepted = swapped.distortion < partition.distortion * (1.0 - kMinGain) &&
-                          swapped.references.size() >= partition.references.size();
+                          swapped.centres.size() >= partition.centres.size();
     if (!accepted) {
       partition.iterations = swapped.iterations;
       break;

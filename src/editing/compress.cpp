@@ -51,9 +51,9 @@ class CellCoverage {
     const IndexRange clusters = map_.gaussiansOf(cell, s), data = dataUnder(cell, s);
     for (std::size_t i = clusters.first; i < clusters.last; ++i) ellipsoids.emplace_back(map_.gaussian(i, s));
     return std::all_of(data_.begin() + static_cast<std::ptrdiff_t>(data.first),
-                       data_.begin() + static_cast<std::ptrdiff_t>(data.last), [&](const Vector<3>& datum) {
+                       data_.begin() + static_cast<std::ptrdiff_t>(data.last), [&](const Vector<3>& mean) {
                          return std::any_of(ellipsoids.begin(), ellipsoids.end(), [&](const Ellipsoid95& ellipsoid) {
-                           return ellipsoid.distance(datum) <= max_error_;
+                           return ellipsoid.distance(mean) <= max_error_;
                          });
                        });
   }

@@ -10,15 +10,15 @@
 namespace gaussmap::detail {
 
 template <int D>
-double cellError(const std::vector<Gaussian<D>>& references, const std::vector<Gaussian<D>>& data) {
+double cellError(const std::vector<Gaussian<D>>& centres, const std::vector<Gaussian<D>>& data) {
   if (data.empty()) return 0.0;
-  if (references.empty()) throw std::invalid_argument("cellError: no clusters to represent the finer Gaussians");
+  if (centres.empty()) throw std::invalid_argument("cellError: no clusters to represent the finer Gaussians");
   double sum = 0.0;
   for (const Gaussian<D>& z : data) {
     const SmallCholesky<D> factor(z.cov);
     if (!factor.positive) throw std::domain_error("cellError: a finer covariance is not positive definite");
     double nearest = std::numeric_limits<double>::infinity();
-    for (const Gaussian<D>& w : references) {
+    for (const Gaussian<D>& w : centres) {
       const Vector<D> difference = w.mean - z.mean;
       nearest = std::min(nearest, (factor.whitening * difference).squaredNorm());
     }

@@ -19,7 +19,7 @@ inline constexpr double kClusteringNoise = 0.5;
 template <int D>
 void addClusteringNoise(std::vector<Gaussian<D>>& data, double side) {
   const double tau = kClusteringNoise * side;
-  for (Gaussian<D>& datum : data) datum.cov += tau * tau * Matrix<D>::Identity();
+  for (Gaussian<D>& gaussian : data) gaussian.cov += tau * tau * Matrix<D>::Identity();
 }
 
 }  // namespace gaussmap::detail

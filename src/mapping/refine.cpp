@@ -18,7 +18,7 @@ RefineOptions RefineOptions::yguel2009() {
   RefineOptions options;
   options.method = RefineMethod::Insert;
   options.queue = 4;
-  options.seed_rule = ClusterSeed::Datum;
+  options.seed_rule = ClusterSeed::InputGaussian;
   return options;
 }
 

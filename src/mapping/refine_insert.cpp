@@ -24,7 +24,7 @@ struct QueuedCell {
 /// The clusters of a refined cell, and the cluster of each finer Gaussian under it.
 template <int D>
 struct CellClusters {
-  std::vector<Gaussian<D>> references;  // empty: the cell still has the one Gaussian of coarsen()
+  std::vector<Gaussian<D>> centres;  // empty: the cell still has the one Gaussian of coarsen()
   std::vector<int> labels;
 };
 
@@ -66,7 +66,7 @@ class InsertionRefiner {
     return distances < kSmallRound ? 1 : options_.threads;
   }
 
-  std::size_t clusterCount(std::size_t cell) const { return std::max<std::size_t>(1, cells_[cell].references.size()); }
+  std::size_t clusterCount(std::size_t cell) const { return std::max<std::size_t>(1, cells_[cell].centres.size()); }
 
   /// Returns the labels of all cells as one cut.
   ClusterCut cut() const {
@@ -102,9 +102,9 @@ class InsertionRefiner {
     std::size_t made = 0;
     for (Insertion& insertion : insertions_) {
       // Without an additional cluster, the cell leaves the queue.
-      if (insertion.clustering.references.size() <= clusterCount(insertion.cell)) continue;
+      if (insertion.clustering.centres.size() <= clusterCount(insertion.cell)) continue;
       ++made;
-      cells_[insertion.cell] = {std::move(insertion.clustering.references), std::move(insertion.clustering.labels)};
+      cells_[insertion.cell] = {std::move(insertion.clustering.centres), std::move(insertion.clustering.labels)};
       enqueue(insertion.cell, insertion.error);
     }
     return made;
@@ -113,14 +113,14 @@ class InsertionRefiner {
   void insert(Insertion& insertion) const {
     const std::size_t cell = insertion.cell;
     const std::vector<Gaussian<D>> data = scale_.dataUnder(cell);
-    std::vector<Gaussian<D>> current = cells_[cell].references;
+    std::vector<Gaussian<D>> current = cells_[cell].centres;
     if (current.empty()) current.push_back(scale_.coarse.gaussians[cell]);
     KLKMeansOptions options;
     options.max_swaps = options_.max_swaps;
     options.seed_rule = options_.seed_rule;
     options.seed = seedOf(scale_.coarse.keys[cell], current.size());
     insertion.clustering = insertCluster(data, current, options);
-    insertion.error = cellError(insertion.clustering.references, data);
+    insertion.error = cellError(insertion.clustering.centres, data);
   }
 
   /// Returns a separate seed for every insertion. It does not depend on the thread or the order of the insertions.

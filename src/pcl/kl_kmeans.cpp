@@ -31,7 +31,7 @@ void setMoments(PointGaussian& point, const Gaussian<3>& gaussian) {
 
 void PointCloudKLKMeans::cluster(std::vector<pcl::PointIndices>& clusters) {
   clusters.clear();
-  references_.clear();
+  centres_.clear();
   result_ = {};
   if (!initCompute()) {
     PCL_ERROR("[gaussmap::PointCloudKLKMeans::cluster] no input cloud\n");
@@ -52,24 +52,24 @@ void PointCloudKLKMeans::cluster(std::vector<pcl::PointIndices>& clusters) {
     deinitCompute();
     return;
   }
-  clusters.resize(result_.references.size());
+  clusters.resize(result_.centres.size());
   for (pcl::PointIndices& cluster : clusters) cluster.header = input_->header;
   for (std::size_t i = 0; i < index.size(); ++i)
     clusters[static_cast<std::size_t>(result_.labels[i])].indices.push_back(index[i]);
-  references_.header = input_->header;
-  references_.sensor_origin_ = input_->sensor_origin_;
-  references_.sensor_orientation_ = input_->sensor_orientation_;
+  centres_.header = input_->header;
+  centres_.sensor_origin_ = input_->sensor_origin_;
+  centres_.sensor_orientation_ = input_->sensor_orientation_;
   for (std::size_t k = 0; k < clusters.size(); ++k) {
     std::sort(clusters[k].indices.begin(), clusters[k].indices.end());
-    PointGaussian reference = (*input_)[static_cast<std::size_t>(clusters[k].indices.front())];
+    PointGaussian centre = (*input_)[static_cast<std::size_t>(clusters[k].indices.front())];
     for (const auto i : clusters[k].indices) {
       const PointGaussian& member = (*input_)[static_cast<std::size_t>(i)];
-      reference.occupancy = std::max(reference.occupancy, member.occupancy);
-      reference.scale = std::max(reference.scale, member.scale);
-      reference.cell_side = std::max(reference.cell_side, member.cell_side);
+      centre.occupancy = std::max(centre.occupancy, member.occupancy);
+      centre.scale = std::max(centre.scale, member.scale);
+      centre.cell_side = std::max(centre.cell_side, member.cell_side);
     }
-    setMoments(reference, result_.references[k]);
-    references_.push_back(reference);
+    setMoments(centre, result_.centres[k]);
+    centres_.push_back(centre);
   }
   deinitCompute();
 }

@@ -71,7 +71,7 @@ void addSeed(Table& table, std::uint64_t seed) {
       table.row(budget, method).runs.push_back(run);
       return run.gaussians;
     };
-    measure(kPaper, paper(ClusterSeed::Datum, seed));
+    measure(kPaper, paper(ClusterSeed::InputGaussian, seed));
     measure(kParentSeed, paper(ClusterSeed::ParentCovariance, seed));
     const std::size_t most = measure(kAgglomeration, RefineOptions());
     const GaussianMap<3> uniform = uniformGrid(data.points, most, one.grid().side(coarsest), options.resolution);

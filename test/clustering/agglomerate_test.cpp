@@ -131,7 +131,7 @@ TEST(Agglomerate, TakesLogarithmsOverTheWholeRangeOfSizes) {
   }
 }
 
-TEST(Agglomerate, HandlesNoDatumOneAndTwo) {
+TEST(Agglomerate, HandlesNoneOneAndTwo) {
   for (const MergeCost cost : kCosts) {
     const Dendrogram none = agglomerate<3>({}, {}, with(cost));
     EXPECT_EQ(none.size, 0u);
@@ -147,7 +147,7 @@ TEST(Agglomerate, HandlesNoDatumOneAndTwo) {
   }
 }
 
-TEST(Agglomerate, MergesEveryNodeOnceAndKeepsTheSmallestDatumFirst) {
+TEST(Agglomerate, MergesEveryNodeOnceAndKeepsTheSmallestFirst) {
   Random random(3);
   const std::vector<Gaussian<3>> data = randomGaussians<3>(random, 200);
   const Dendrogram dendrogram = agglomerate(data, randomAreas(random, 200));
@@ -249,9 +249,10 @@ TEST(Agglomerate, MergesDuplicatesFirst) {
 TEST(Agglomerate, IsTheSameFarAway) {
   Random random(7);
   std::vector<Gaussian<3>> data = randomGaussians<3>(random, 80);
-  for (Gaussian<3>& datum : data) datum.mean = (datum.mean * 1024.0).array().round() / 1024.0;  // exact when moved
+  for (Gaussian<3>& gaussian : data)
+    gaussian.mean = (gaussian.mean * 1024.0).array().round() / 1024.0;  // exact when moved
   const Dendrogram here = agglomerate(data, ones(80));
-  for (Gaussian<3>& datum : data) datum.mean += Vector<3>(6e12, -4e12, 2e12);
+  for (Gaussian<3>& gaussian : data) gaussian.mean += Vector<3>(6e12, -4e12, 2e12);
   expectSameTree(agglomerate(data, ones(80)), here, 1e-9);
 }
 
@@ -259,7 +260,7 @@ TEST(Agglomerate, EndsWithFiniteCostsOnDataOfAnySize) {
   Random random(8);
   for (const double scale : {1e-60, 1e-20, 1e20, 1e60, 1e120, 1e307}) {
     std::vector<Gaussian<3>> data = randomGaussians<3>(random, 30);
-    for (Gaussian<3>& datum : data) datum.mean *= scale;
+    for (Gaussian<3>& gaussian : data) gaussian.mean *= scale;
     for (const MergeCost cost : kCosts) {
       const Dendrogram dendrogram = agglomerate(data, ones(30), with(cost));
       ASSERT_EQ(dendrogram.merges.size(), 29u);
@@ -338,7 +339,7 @@ TEST(Agglomerate, LosesLittleWithFewNeighbours) {
     const std::vector<Gaussian<3>> more = wallsAndPole(random);
     data.insert(data.end(), more.begin(), more.end());
   }
-  for (Gaussian<3>& datum : data) datum.cov += 0.0025 * Matrix<3>::Identity();
+  for (Gaussian<3>& gaussian : data) gaussian.cov += 0.0025 * Matrix<3>::Identity();
   ASSERT_GT(data.size(), AgglomerateOptions().max_exact);
   const auto volumeAt = [&](std::size_t k, std::size_t max_exact) {
     AgglomerateOptions options;

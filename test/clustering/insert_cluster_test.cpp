@@ -22,14 +22,14 @@ TEST(InsertCluster, StartsWithOneClusterForAll) {
   Random random(1);
   const std::vector<Gaussian<3>> data = randomGaussians<3>(random, 20);
   const KLClustering<3> clustering = insertCluster(data, {});
-  ASSERT_EQ(clustering.references.size(), 1u);
+  ASSERT_EQ(clustering.centres.size(), 1u);
   EXPECT_EQ(clustering.labels, std::vector<int>(20, 0));
-  EXPECT_EQ(clustering.references[0].cov, merge(data).cov);
+  EXPECT_EQ(clustering.centres[0].cov, merge(data).cov);
 }
 
 TEST(InsertCluster, OfNothingIsEmpty) {
-  EXPECT_TRUE(insertCluster<3>({}, {}).references.empty());
-  EXPECT_TRUE(insertCluster<3>({}, {sphere(0, 1)}).references.empty());
+  EXPECT_TRUE(insertCluster<3>({}, {}).centres.empty());
+  EXPECT_TRUE(insertCluster<3>({}, {sphere(0, 1)}).centres.empty());
 }
 
 template <int D>
@@ -39,8 +39,8 @@ void expectOneMoreAndLessDistortion() {
     const std::vector<Gaussian<D>> data = randomGaussians<D>(random, 40);
     KLClustering<D> clustering = insertCluster<D>(data, {});
     for (std::size_t k = 2; k <= 8; ++k) {
-      KLClustering<D> more = insertCluster(data, clustering.references);
-      EXPECT_EQ(more.references.size(), k);
+      KLClustering<D> more = insertCluster(data, clustering.centres);
+      EXPECT_EQ(more.centres.size(), k);
       EXPECT_LT(more.distortion, clustering.distortion);
       clustering = std::move(more);
     }
@@ -58,16 +58,16 @@ TEST(InsertCluster, GivesEveryDatumItsOwnClusterWhenThereAreEnough) {
   const KLClustering<3> clustering = insertCluster(data, {sphere(0, 1), sphere(2, 1)});
   EXPECT_EQ(clustering.labels, (std::vector<int>{0, 1, 2}));
   EXPECT_EQ(clustering.distortion, 0.0);
-  EXPECT_EQ(clustering.references[1].mean, data[1].mean);
+  EXPECT_EQ(clustering.centres[1].mean, data[1].mean);
 }
 
 TEST(InsertCluster, DoesNotSplitDuplicates) {
   const std::vector<Gaussian<3>> data(10, sphere(3, 0.2));
-  for (ClusterSeed rule : {ClusterSeed::ParentCovariance, ClusterSeed::Datum}) {
+  for (ClusterSeed rule : {ClusterSeed::ParentCovariance, ClusterSeed::InputGaussian}) {
     KLKMeansOptions options;
     options.seed_rule = rule;
     const KLClustering<3> clustering = insertCluster(data, {data[0]}, options);
-    EXPECT_EQ(clustering.references.size(), 1u);
+    EXPECT_EQ(clustering.centres.size(), 1u);
     EXPECT_NEAR(clustering.distortion, 0.0, 1e-12);
   }
 }
@@ -77,7 +77,7 @@ TEST(InsertCluster, SeparatesAPoleFromAWall) {
   std::vector<Gaussian<3>> data = wallsAndPole(random);
   data.erase(data.begin(), data.begin() + kPatches);  // one wall and the pole stay
   const KLClustering<3> clustering = insertCluster(data, {merge(data)});
-  ASSERT_EQ(clustering.references.size(), 2u);
+  ASSERT_EQ(clustering.centres.size(), 2u);
   for (std::size_t j = 0; j < data.size(); ++j)
     EXPECT_EQ(clustering.labels[j], clustering.labels[j < kPatches ? 0 : kPatches]) << j;
 }
@@ -94,10 +94,10 @@ TEST(InsertCluster, TakesNeighboursAlongOnlyWithTheParentsCovariance) {
     return std::min<std::ptrdiff_t>(ones, std::ptrdiff_t(labels.size()) - ones);
   };
   EXPECT_GT(smallerCluster(ClusterSeed::ParentCovariance), 20);
-  EXPECT_LT(smallerCluster(ClusterSeed::Datum), 5);
+  EXPECT_LT(smallerCluster(ClusterSeed::InputGaussian), 5);
 }
 
-TEST(InsertCluster, SeedsAtTheFarDatumNotAtTheHeavyOne) {
+TEST(InsertCluster, SeedsAtTheFarGaussianNotAtTheHeavyOne) {
   // A crowd at 0, a light stray at x = 8, heavy data at x = -6: the stray is farther, the heavy ones cost more.
   std::vector<Gaussian<3>> data;
   for (int i = 0; i < 40; ++i) data.push_back(sphere(0.01 * i - 0.2, 0.3, 10.0));
@@ -111,21 +111,21 @@ TEST(InsertCluster, SeedsAtTheFarDatumNotAtTheHeavyOne) {
 
 TEST(KLProblem, GivesTheDivergencesOfThePaper) {  // what the swap loop compares: d_max with d_min
   Random random(8);
-  const std::vector<Gaussian<3>> data = randomGaussians<3>(random, 300), references = randomGaussians<3>(random, 5);
+  const std::vector<Gaussian<3>> data = randomGaussians<3>(random, 300), centres = randomGaussians<3>(random, 5);
   const KLProblem<3> problem(data);
   KLPartition<3> partition;
-  partition.references = references;
-  for (Gaussian<3>& w : partition.references) w.mean -= problem.centre();
-  problem.assign(partition.references, partition.assignment);
+  partition.centres = centres;
+  for (Gaussian<3>& w : partition.centres) w.mean -= problem.centre();
+  problem.assign(partition.centres, partition.assignment);
   partition.labels = partition.assignment.labels;
   const Eigen::VectorXd own = problem.ownDistances(partition);
   for (std::size_t j = 0; j < data.size(); ++j)
-    EXPECT_NEAR(own(Eigen::Index(j)), klDivergence(data[j], references[std::size_t(partition.labels[j])]),
+    EXPECT_NEAR(own(Eigen::Index(j)), klDivergence(data[j], centres[std::size_t(partition.labels[j])]),
                 1e-10 * (1.0 + own(Eigen::Index(j))));
-  const Eigen::MatrixXd between = KLProblem<3>::distancesBetween(references);
+  const Eigen::MatrixXd between = KLProblem<3>::distancesBetween(centres);
   for (Eigen::Index u = 0; u < 5; ++u)
     for (Eigen::Index v = 0; v < 5; ++v)
-      EXPECT_NEAR(between(u, v), klDivergence(references[std::size_t(u)], references[std::size_t(v)]),
+      EXPECT_NEAR(between(u, v), klDivergence(centres[std::size_t(u)], centres[std::size_t(v)]),
                   1e-10 * (1.0 + between(u, v)));
 }
 
@@ -141,7 +141,7 @@ TEST(InsertCluster, NeverLosesBySwapping) {
     for (options.max_swaps = 0; options.max_swaps < 6; ++options.max_swaps) {  // the same draws, one more each time
       const KLClustering<3> clustering = insertCluster(data, current, options);
       EXPECT_LE(clustering.swaps, options.max_swaps);
-      EXPECT_EQ(clustering.references.size(), 5u);
+      EXPECT_EQ(clustering.centres.size(), 5u);
       if (clustering.swaps == options.max_swaps && options.max_swaps > 0)
         EXPECT_LT(clustering.distortion, before);
       else

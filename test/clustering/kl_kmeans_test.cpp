@@ -14,12 +14,12 @@ namespace gaussmap {
 namespace {
 
 template <int D>
-std::vector<int> naiveLabels(const std::vector<Gaussian<D>>& data, const std::vector<Gaussian<D>>& references) {
+std::vector<int> naiveLabels(const std::vector<Gaussian<D>>& data, const std::vector<Gaussian<D>>& centres) {
   std::vector<int> labels;
   for (const Gaussian<D>& z : data) {
     int best = 0;
-    for (int c = 1; c < static_cast<int>(references.size()); ++c)
-      if (klDivergence(z, references[std::size_t(c)]) < klDivergence(z, references[std::size_t(best)])) best = c;
+    for (int c = 1; c < static_cast<int>(centres.size()); ++c)
+      if (klDivergence(z, centres[std::size_t(c)]) < klDivergence(z, centres[std::size_t(best)])) best = c;
     labels.push_back(best);
   }
   return labels;
@@ -30,21 +30,21 @@ template <int D>
 void expectSound(const std::vector<Gaussian<D>>& data, const KLClustering<D>& clustering) {
   ASSERT_EQ(clustering.labels.size(), data.size());
   double distortion = 0.0;
-  std::vector<std::vector<Gaussian<D>>> members(clustering.references.size());
+  std::vector<std::vector<Gaussian<D>>> members(clustering.centres.size());
   for (std::size_t j = 0; j < data.size(); ++j) {
     ASSERT_GE(clustering.labels[j], 0);
-    ASSERT_LT(clustering.labels[j], static_cast<int>(clustering.references.size()));
+    ASSERT_LT(clustering.labels[j], static_cast<int>(clustering.centres.size()));
     const auto label = static_cast<std::size_t>(clustering.labels[j]);
     members[label].push_back(data[j]);
-    distortion += data[j].weight * klDivergence(data[j], clustering.references[label]);  // eq. (7)
+    distortion += data[j].weight * klDivergence(data[j], clustering.centres[label]);  // eq. (7)
   }
   EXPECT_NEAR(clustering.distortion, distortion, 1e-9 * (1.0 + distortion));
   for (std::size_t c = 0; c < members.size(); ++c) {
     ASSERT_FALSE(members[c].empty());
     const Gaussian<D> match = merge(members[c]);
-    EXPECT_EQ(clustering.references[c].mean, match.mean);
-    EXPECT_EQ(clustering.references[c].cov, match.cov);
-    EXPECT_EQ(clustering.references[c].weight, match.weight);
+    EXPECT_EQ(clustering.centres[c].mean, match.mean);
+    EXPECT_EQ(clustering.centres[c].cov, match.cov);
+    EXPECT_EQ(clustering.centres[c].weight, match.weight);
   }
 }
 
@@ -72,7 +72,7 @@ TEST(KLKMeans, NamesTheOptionThatItRefuses) {
   EXPECT_NE(messageFor([](KLKMeansOptions& o) { o.max_swaps = -1; }).find("max_swaps"), std::string::npos);
 }
 
-TEST(KLKMeans, NamesTheDatumThatItRefuses) {
+TEST(KLKMeans, NamesTheGaussianThatItRefuses) {
   Random random(1);
   const std::vector<Gaussian<3>> good = randomGaussians<3>(random, 5);
   const auto messageFor = [&](void (*spoil)(Gaussian<3>&)) -> std::string {
@@ -102,16 +102,16 @@ TEST(KLKMeans, RefusesReferencesItCannotStartFrom) {
   Random random(2);
   const std::vector<Gaussian<2>> data = randomGaussians<2>(random, 5);
   EXPECT_THROW(KLKMeans<2>().run(data, {}), std::invalid_argument);
-  std::vector<Gaussian<2>> references = {data[0], data[1]};
-  references[1].cov.setZero();
-  EXPECT_THROW(KLKMeans<2>().run(data, references), std::domain_error);
+  std::vector<Gaussian<2>> centres = {data[0], data[1]};
+  centres[1].cov.setZero();
+  EXPECT_THROW(KLKMeans<2>().run(data, centres), std::domain_error);
 }
 
 TEST(KLKMeans, OfNothingIsEmpty) {
-  EXPECT_TRUE(KLKMeans<3>().fit({}).references.empty());
+  EXPECT_TRUE(KLKMeans<3>().fit({}).centres.empty());
   EXPECT_TRUE(KLKMeans<3>().fit({}).labels.empty());
   EXPECT_EQ(KLKMeans<3>().fit({}).distortion, 0.0);
-  EXPECT_TRUE(KLKMeans<3>().run({}, {}).references.empty());
+  EXPECT_TRUE(KLKMeans<3>().run({}, {}).centres.empty());
 }
 
 TEST(KLKMeans, LeavesEveryDatumAloneWhenThereAreEnoughClusters) {
@@ -124,7 +124,7 @@ TEST(KLKMeans, LeavesEveryDatumAloneWhenThereAreEnoughClusters) {
     EXPECT_EQ(clustering.distortion, 0.0);
     expectSound(data, clustering);
   }
-  EXPECT_EQ(KLKMeans<3>(withK(1)).fit({data[0]}).references.size(), 1u);
+  EXPECT_EQ(KLKMeans<3>(withK(1)).fit({data[0]}).centres.size(), 1u);
 }
 
 TEST(KLKMeans, FindsThePairsOfFourSpheresAndTheirDistortion) {
@@ -143,8 +143,8 @@ TEST(KLKMeans, WeighsTheMeansByTheWeights) {  // weights 3 and 1 at x = 0 and 4:
   const std::vector<Gaussian<2>> data = {{{0, 0}, Eigen::Matrix2d::Identity(), 3.0},
                                          {{4, 0}, Eigen::Matrix2d::Identity(), 1.0}};
   const KLClustering<2> clustering = KLKMeans<2>(withK(1)).fit(data);
-  EXPECT_NEAR(clustering.references[0].mean.x(), 1.0, 1e-14);
-  EXPECT_NEAR(clustering.references[0].cov(0, 0), 4.0, 1e-14);
+  EXPECT_NEAR(clustering.centres[0].mean.x(), 1.0, 1e-14);
+  EXPECT_NEAR(clustering.centres[0].cov(0, 0), 4.0, 1e-14);
   EXPECT_NEAR(clustering.distortion, 0.5 * 4.0 * std::log(4.0), 1e-12);
 }
 
@@ -152,12 +152,12 @@ template <int D>
 void expectNaiveAssignment() {
   Random random(4);
   for (std::size_t n : {1u, 7u, 255u, 256u, 257u, 1000u}) {  // around the block of the product
-    const std::vector<Gaussian<D>> data = randomGaussians<D>(random, n), references = randomGaussians<D>(random, 6);
+    const std::vector<Gaussian<D>> data = randomGaussians<D>(random, n), centres = randomGaussians<D>(random, 6);
     KLKMeansOptions options;
     options.max_iterations = 1;  // one assignment, one update
-    const std::vector<int> labels = KLKMeans<D>(options).run(data, references).labels;
-    std::vector<int> expected = naiveLabels(data, references);
-    const std::set<int> used(expected.begin(), expected.end());  // labels move up when empty references go
+    const std::vector<int> labels = KLKMeans<D>(options).run(data, centres).labels;
+    std::vector<int> expected = naiveLabels(data, centres);
+    const std::set<int> used(expected.begin(), expected.end());  // labels move up when empty centres go
     for (int& label : expected) label = static_cast<int>(std::distance(used.begin(), used.find(label)));
     EXPECT_EQ(labels, expected) << n;
   }
@@ -176,7 +176,7 @@ void expectSoundResults() {
     const std::vector<Gaussian<D>> data = randomGaussians<D>(random, 1 + random.below(60));
     const int k = 1 + static_cast<int>(random.below(8));
     const KLClustering<D> clustering = KLKMeans<D>(withK(k)).fit(data);
-    EXPECT_LE(clustering.references.size(), static_cast<std::size_t>(k));
+    EXPECT_LE(clustering.centres.size(), static_cast<std::size_t>(k));
     expectSound(data, clustering);
   }
 }
@@ -187,7 +187,7 @@ TEST(KLKMeans, GivesMomentMatchesAndTheirDistortionIn3D) {
   expectSoundResults<3>();
 }
 
-TEST(KLKMeans, EndsWithEveryDatumAtItsNearestReference) {
+TEST(KLKMeans, EndsWithEveryDatumAtItsNearestCentre) {
   Random random(6);
   const std::vector<Gaussian<3>> data = randomGaussians<3>(random, 200);
   KLKMeansOptions options = withK(5);
@@ -195,7 +195,7 @@ TEST(KLKMeans, EndsWithEveryDatumAtItsNearestReference) {
   options.max_iterations = 1000;
   const KLClustering<3> clustering = KLKMeans<3>(options).fit(data);
   EXPECT_TRUE(clustering.converged);
-  EXPECT_EQ(clustering.labels, naiveLabels(data, clustering.references));
+  EXPECT_EQ(clustering.labels, naiveLabels(data, clustering.centres));
 }
 
 TEST(KLKMeans, NeverRaisesTheDistortionFromOneIterationToTheNext) {
@@ -230,7 +230,7 @@ TEST(KLKMeans, DropsReferencesWithoutMembers) {
   Gaussian<3> nobody = data[0];
   nobody.mean.x() += 1e6;
   const KLClustering<3> clustering = KLKMeans<3>().run(data, {nobody, data[0], nobody, data[1]});
-  EXPECT_EQ(clustering.references.size(), 2u);
+  EXPECT_EQ(clustering.centres.size(), 2u);
   expectSound(data, clustering);
 }
 
@@ -238,9 +238,9 @@ TEST(KLKMeans, BreaksTiesTowardsTheSmallerLabel) {
   Random random(10);
   const std::vector<Gaussian<3>> data = randomGaussians<3>(random, 50);
   const KLClustering<3> clustering = KLKMeans<3>().run(data, {data[7], data[7], data[7]});
-  EXPECT_EQ(clustering.references.size(), 1u);
+  EXPECT_EQ(clustering.centres.size(), 1u);
   EXPECT_EQ(clustering.labels, std::vector<int>(50, 0));
-  // A datum half-way between two references, exactly.
+  // A gaussian half-way between two centres, exactly.
   std::vector<Gaussian<2>> row;
   for (double x : {-1.0, 0.0, 1.0}) row.push_back({{x, 0}, Eigen::Matrix2d::Identity(), 1.0});
   KLKMeansOptions options;
@@ -253,12 +253,12 @@ TEST(KLKMeans, PutsDuplicatesIntoOneCluster) {
   Random random(11);
   const std::vector<Gaussian<3>> two = randomGaussians<3>(random, 2);
   const KLClustering<3> one = KLKMeans<3>(withK(3)).fit(std::vector<Gaussian<3>>(10, two[0]));
-  EXPECT_EQ(one.references.size(), 1u);
+  EXPECT_EQ(one.centres.size(), 1u);
   EXPECT_NEAR(one.distortion, 0.0, 1e-12);
   std::vector<Gaussian<3>> mixed;
   for (int i = 0; i < 10; ++i) mixed.push_back(two[std::size_t(i % 2)]);
   const KLClustering<3> both = KLKMeans<3>(withK(4)).fit(mixed);
-  EXPECT_EQ(both.references.size(), 2u);
+  EXPECT_EQ(both.centres.size(), 2u);
   EXPECT_NEAR(both.distortion, 0.0, 1e-12);
   expectSound(mixed, both);
 }
@@ -289,14 +289,14 @@ TEST(KLKMeans, GivesTheSameBytesForTheSameSeed) {
   const KLClustering<3> a = KLKMeans<3>(withK(6)).fit(data), b = KLKMeans<3>(withK(6)).fit(data);
   EXPECT_EQ(a.labels, b.labels);
   EXPECT_EQ(a.distortion, b.distortion);
-  for (std::size_t c = 0; c < a.references.size(); ++c) EXPECT_EQ(a.references[c].cov, b.references[c].cov);
+  for (std::size_t c = 0; c < a.centres.size(); ++c) EXPECT_EQ(a.centres[c].cov, b.centres[c].cov);
 }
 
 TEST(KLKMeans, TellsTwoWallsAndAPoleApart) {
   Random random(15);
   const std::vector<Gaussian<3>> data = wallsAndPole(random);
   const KLClustering<3> clustering = KLKMeans<3>(withK(3)).fit(data);
-  ASSERT_EQ(clustering.references.size(), 3u);
+  ASSERT_EQ(clustering.centres.size(), 3u);
   std::set<std::set<int>> labels_of_part;  // three parts, one label each, all different
   for (std::size_t part = 0; part < 3; ++part)
     labels_of_part.insert({clustering.labels.begin() + std::ptrdiff_t(part * kPatches),

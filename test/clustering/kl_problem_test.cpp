@@ -11,24 +11,24 @@ using namespace detail;
 
 namespace {
 
-/// Changes some references: replaces, repeats another (ties), adds, removes.
+/// Changes some centres: replaces, repeats another (ties), adds, removes.
 template <int D>
-void change(std::vector<Gaussian<D>>& references, const std::vector<Gaussian<D>>& pool, Random& random) {
+void change(std::vector<Gaussian<D>>& centres, const std::vector<Gaussian<D>>& pool, Random& random) {
   const auto any = [&](std::size_t n) { return static_cast<std::size_t>(random.below(n)); };
   for (std::size_t changes = any(4); changes > 0; --changes) {
-    const std::size_t place = any(references.size());
+    const std::size_t place = any(centres.size());
     switch (any(5)) {
       case 0:
-        references[place] = references[any(references.size())];
+        centres[place] = centres[any(centres.size())];
         break;
       case 1:
-        references.push_back(pool[any(pool.size())]);
+        centres.push_back(pool[any(pool.size())]);
         break;
       case 2:
-        if (references.size() > 1) references.erase(references.begin() + static_cast<std::ptrdiff_t>(place));
+        if (centres.size() > 1) centres.erase(centres.begin() + static_cast<std::ptrdiff_t>(place));
         break;
       default:
-        references[place] = pool[any(pool.size())];
+        centres[place] = pool[any(pool.size())];
     }
   }
 }
@@ -39,16 +39,16 @@ void expectAssignmentsLikeFreshOnes(std::uint64_t seed) {
   const std::vector<Gaussian<D>> data = randomGaussians<D>(random, 600);  // more than two blocks
   const KLProblem<D> problem(data);
   std::vector<Gaussian<D>> pool;
-  for (std::size_t j = 0; j < data.size(); ++j) pool.push_back(problem.datum(j));
-  std::vector<Gaussian<D>> references(pool.begin(), pool.begin() + 20);
+  for (std::size_t j = 0; j < data.size(); ++j) pool.push_back(problem.input(j));
+  std::vector<Gaussian<D>> centres(pool.begin(), pool.begin() + 20);
   KLAssignment<D> kept;
   for (int round = 0; round < 200; ++round) {
     KLAssignment<D> fresh;
-    problem.assign(references, kept);
-    problem.assign(references, fresh);
+    problem.assign(centres, kept);
+    problem.assign(centres, fresh);
     ASSERT_EQ(kept.labels, fresh.labels) << "round " << round;
     ASSERT_EQ(kept.distances, fresh.distances) << "round " << round;
-    change<D>(references, pool, random);
+    change<D>(centres, pool, random);
   }
 }
 
@@ -59,18 +59,18 @@ TEST(KLProblem, AssignsLikeTheFirstTimeWhateverItAssignedBefore) {
   }
 }
 
-TEST(KLProblem, AssignsEveryDatumToItsNearestReference) {
+TEST(KLProblem, AssignsEveryDatumToItsNearestCentre) {
   Random random(7);
   const std::vector<Gaussian<3>> data = randomGaussians<3>(random, 300);
   const KLProblem<3> problem(data);
-  std::vector<Gaussian<3>> references;
-  for (std::size_t j = 0; j < 12; ++j) references.push_back(problem.datum(25 * j));
+  std::vector<Gaussian<3>> centres;
+  for (std::size_t j = 0; j < 12; ++j) centres.push_back(problem.input(25 * j));
   KLAssignment<3> assignment;
-  problem.assign(references, assignment);
+  problem.assign(centres, assignment);
   for (std::size_t j = 0; j < data.size(); ++j) {
-    const double own = klDivergence(problem.datum(j), references[static_cast<std::size_t>(assignment.labels[j])]);
-    for (const Gaussian<3>& reference : references)
-      ASSERT_LE(own, klDivergence(problem.datum(j), reference) * (1 + 1e-9) + 1e-9);
+    const double own = klDivergence(problem.input(j), centres[static_cast<std::size_t>(assignment.labels[j])]);
+    for (const Gaussian<3>& centre : centres)
+      ASSERT_LE(own, klDivergence(problem.input(j), centre) * (1 + 1e-9) + 1e-9);
   }
 }
 

@@ -102,8 +102,8 @@ TEST(Agglomerate, BreaksTiesAsBruteForceDoes) {  // a lattice of equal Gaussians
   Random random(2);
   for (int trial = 0; trial < 200; ++trial) {
     std::vector<Gaussian<2>> data(2 + random.below(39), {{0, 0}, Eigen::Matrix2d::Identity(), 1.0});
-    for (Gaussian<2>& datum : data)
-      datum.mean = {4.0 * static_cast<double>(random.below(4)), 4.0 * static_cast<double>(random.below(4))};
+    for (Gaussian<2>& gaussian : data)
+      gaussian.mean = {4.0 * static_cast<double>(random.below(4)), 4.0 * static_cast<double>(random.below(4))};
     const std::vector<double> areas(data.size(), 1.0);
     for (const MergeCost cost : {MergeCost::Volume, MergeCost::Runnalls}) {
       AgglomerateOptions options;

@@ -46,9 +46,9 @@ TEST(MergeTable, KeepsMoments) {  // after any merges the last cluster is the mo
   Random random(2);
   std::vector<Gaussian<3>> data = randomGaussians<3>(random, 20);
   std::vector<double> areas;
-  for (Gaussian<3>& datum : data) {
+  for (Gaussian<3>& gaussian : data) {
     areas.push_back(1.0 + static_cast<double>(random.below(9)));
-    datum.weight = areas.back();
+    gaussian.weight = areas.back();
   }
   const Gaussian<3> all = merge(data), probe = {{4, 5, 6}, Matrix<3>::Identity(), 1.0};
   const double expected =

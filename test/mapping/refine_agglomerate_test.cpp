@@ -26,7 +26,7 @@ std::vector<double> areasOf(const GaussianMap<3>& map, int s) {
 Dendrogram dendrogramUnder(const GaussianMap<3>& map, std::size_t cell, int s, MergeCost cost) {
   std::vector<Gaussian<3>> data = dataUnder(map, cell, s);
   const double tau = 0.5 * map.grid().side(0);
-  for (Gaussian<3>& datum : data) datum.cov.diagonal().array() += tau * tau;
+  for (Gaussian<3>& gaussian : data) gaussian.cov.diagonal().array() += tau * tau;
   const std::vector<double> all = areasOf(map, s - 1);
   const auto first = all.begin() + static_cast<std::ptrdiff_t>(map.gaussiansUnder(cell, s).first);
   AgglomerateOptions options;

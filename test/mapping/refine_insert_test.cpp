@@ -35,11 +35,11 @@ TEST(RefineByInsertion,
   EXPECT_GE(least_refined, worst_alone);
 }
 
-TEST(RefineByInsertion, OfThePaperTakesFourCellsAtATimeAndSeedsAtTheDatum) {
+TEST(RefineByInsertion, OfThePaperTakesFourCellsAtATimeAndSeedsAtTheInput) {
   const RefineOptions paper = RefineOptions::yguel2009();
   RefineOptions options = by(RefineMethod::Insert);
   options.queue = 4;
-  options.seed_rule = ClusterSeed::Datum;
+  options.seed_rule = ClusterSeed::InputGaussian;
   const GaussianMap<3> map = roomMap(20000);
   const GaussianMap<3> refined = refine(map, PerCell{2.0}, paper).map;
   expectSameBytes(refine(map, PerCell{2.0}, options).map, refined);

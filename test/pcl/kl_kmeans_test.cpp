@@ -32,18 +32,18 @@ TEST(PointCloudKLKMeans, GivesTheClustersOfTheCore) {
   clustering.setInputCloud(cloud);
   std::vector<pcl::PointIndices> clusters;
   clustering.cluster(clusters);
-  ASSERT_EQ(clusters.size(), expected.references.size());
+  ASSERT_EQ(clusters.size(), expected.centres.size());
   EXPECT_EQ(clustering.result().distortion, expected.distortion);
   std::size_t members = 0;
   for (std::size_t k = 0; k < clusters.size(); ++k) {
     members += clusters[k].indices.size();
     for (const auto i : clusters[k].indices) EXPECT_EQ(expected.labels[std::size_t(i)], int(k));
-    const PointGaussian& reference = clustering.getReferences()[k];
-    EXPECT_LT((reference.getVector3fMap().cast<double>() - expected.references[k].mean).norm(), 1e-5);
-    EXPECT_NEAR(double(reference.covariance[1]), expected.references[k].cov(0, 1), 1e-5);
-    EXPECT_NEAR(double(reference.weight), expected.references[k].weight, 1e-3);
-    EXPECT_EQ(reference.cell_side, 0.5f);
-    EXPECT_EQ(reference.occupancy, 10.0f);
+    const PointGaussian& centre = clustering.getCentres()[k];
+    EXPECT_LT((centre.getVector3fMap().cast<double>() - expected.centres[k].mean).norm(), 1e-5);
+    EXPECT_NEAR(double(centre.covariance[1]), expected.centres[k].cov(0, 1), 1e-5);
+    EXPECT_NEAR(double(centre.weight), expected.centres[k].weight, 1e-3);
+    EXPECT_EQ(centre.cell_side, 0.5f);
+    EXPECT_EQ(centre.occupancy, 10.0f);
   }
   EXPECT_EQ(members, cloud->size());
 }

@@ -14,7 +14,7 @@ enum class ClusterSeed {
   /// The mean of the Gaussian, with the covariance of the cluster that it leaves. Its neighbours join the new cluster.
   ParentCovariance,
   /// The Gaussian itself, as in the paper. Its small covariance keeps all other Gaussians out of the new cluster.
-  Datum,
+  InputGaussian,
 };
 
 /// Options of KLKMeans and insertCluster().
@@ -30,12 +30,12 @@ struct KLKMeansOptions {
 /// The result of k-means: a partition of n Gaussians.
 template <int D>
 struct KLClustering {
-  std::vector<Gaussian<D>> references;  ///< k' <= k cluster centres, each the moment match of its members; none empty
-  std::vector<int> labels;              ///< n, labels[i] in [0, k')
-  double distortion = 0.0;              ///< sum_j alpha_j KL(z_j || w_label(j)) [nat], Yguel 2009 eq. (7)
-  int iterations = 0;                   ///< of k-means, summed over all runs, including rejected swaps
-  int swaps = 0;                        ///< accepted rounds of the swap loop
-  bool converged = true;                ///< false: the run that gave this result stopped at max_iterations
+  std::vector<Gaussian<D>> centres;  ///< k' <= k cluster centres, each the moment match of its members; none empty
+  std::vector<int> labels;           ///< n, labels[i] in [0, k')
+  double distortion = 0.0;           ///< sum_j alpha_j KL(z_j || w_label(j)) [nat], Yguel 2009 eq. (7)
+  int iterations = 0;                ///< of k-means, summed over all runs, including rejected swaps
+  int swaps = 0;                     ///< accepted rounds of the swap loop
+  bool converged = true;             ///< false: the run that gave this result stopped at max_iterations
 };
 
 /// Weighted k-means over Gaussians with the KL divergence as distance, Yguel 2009 sec. 5.2.1 (after Davis & Dhillon
@@ -65,7 +65,7 @@ class GAUSSMAP_API KLKMeans {
   /// Runs plain k-means on `data` from the given centres, without swaps. KLKMeansOptions::k is not used.
   /// Also throws std::invalid_argument if there is input but no initial centre. The centres must satisfy the same
   /// conditions as the input.
-  KLClustering<D> run(const std::vector<Gaussian<D>>& data, const std::vector<Gaussian<D>>& initial_references) const;
+  KLClustering<D> run(const std::vector<Gaussian<D>>& data, const std::vector<Gaussian<D>>& initial_centres) const;
 
  private:
   KLKMeansOptions options_;
@@ -77,7 +77,7 @@ class GAUSSMAP_API KLKMeans {
 /// While the distortion falls, the swap loop then moves the centre that is needed least to the Gaussian of largest
 /// distortion.
 ///
-/// - `current_references` are the k - 1 current cluster centres. If there are none, the result is one cluster.
+/// - `current_centres` are the k - 1 current cluster centres. If there are none, the result is one cluster.
 /// - The result has at most k clusters. Duplicates in the input can prevent an additional cluster.
 /// - The distortion never exceeds that of the current centres.
 /// - If k >= n, each Gaussian becomes its own cluster, with distortion 0.
@@ -85,7 +85,7 @@ class GAUSSMAP_API KLKMeans {
 /// KLKMeansOptions::k is not used. Input and errors are the same as for KLKMeans.
 template <int D>
 GAUSSMAP_API KLClustering<D> insertCluster(const std::vector<Gaussian<D>>& data,
-                                           const std::vector<Gaussian<D>>& current_references,
+                                           const std::vector<Gaussian<D>>& current_centres,
                                            const KLKMeansOptions& options = {});
 
 }  // namespace gaussmap

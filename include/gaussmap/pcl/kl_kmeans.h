@@ -34,13 +34,13 @@ class GAUSSMAP_API PointCloudKLKMeans : public pcl::PCLBase<PointGaussian> {
 
   /// Returns the Gaussian of each cluster of the last cluster(): the moment match of its members. Scale, cell side and
   /// occupancy are the maximum over the members. The cell is that of the first member.
-  const pcl::PointCloud<PointGaussian>& getReferences() const { return references_; }
+  const pcl::PointCloud<PointGaussian>& getCentres() const { return centres_; }
   /// Returns the full result of the last cluster(): distortion, iterations, and whether it converged.
   const KLClustering<3>& result() const { return result_; }
 
  private:
   KLKMeansOptions options_;
-  pcl::PointCloud<PointGaussian> references_;
+  pcl::PointCloud<PointGaussian> centres_;
   KLClustering<3> result_;
 };
 

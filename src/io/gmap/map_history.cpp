@@ -68,7 +68,7 @@ std::string refineStep(const Budget& budget, const RefineOptions& options, const
     own["seed"] = options.seed;
     if (options.queue != usual.queue) own["queue"] = options.queue;
     if (options.max_swaps != usual.max_swaps) own["max_swaps"] = options.max_swaps;
-    if (options.seed_rule == ClusterSeed::Datum) own["seed_rule"] = "datum";
+    if (options.seed_rule == ClusterSeed::InputGaussian) own["seed_rule"] = "datum";
   }
   return withDetails(own, details);
 }

@@ -25,10 +25,10 @@ std::vector<std::uint32_t> cellsToForget(const OnlineCells<D>& cells, const Onli
 /// LearningRate::Occupancy, where coarse clusters learn from the points and not from the finer clusters.
 template <int D>
 void readjust(OnlineCells<D>& cells, std::uint32_t i, int scale) {
-  std::vector<Gaussian<D>> references;
-  for (const OnlineCluster<D>& cluster : cells.cell(i, scale).clusters) references.push_back(cluster.gaussian);
-  const KLClustering<D> adjusted = KLKMeans<D>().run(cells.dataUnder(i, scale), references);
-  recluster(cells, i, scale, adjusted.references, adjusted.labels);
+  std::vector<Gaussian<D>> centres;
+  for (const OnlineCluster<D>& cluster : cells.cell(i, scale).clusters) centres.push_back(cluster.gaussian);
+  const KLClustering<D> adjusted = KLKMeans<D>().run(cells.dataUnder(i, scale), centres);
+  recluster(cells, i, scale, adjusted.centres, adjusted.labels);
 }
 
 }  // namespace

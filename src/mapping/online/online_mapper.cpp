@@ -87,7 +87,7 @@ OnlineOptions OnlineOptions::yguel2009(int dimensions) {
   options.refine_every = 10;
   options.refine_cells = 4;
   options.method = RefineMethod::Insert;
-  options.seed_rule = ClusterSeed::Datum;
+  options.seed_rule = ClusterSeed::InputGaussian;
   return options;
 }
 

@@ -111,11 +111,11 @@ template <int D>
 void refineVisible(OnlineCells<D>& cells, const OnlineScan<D>& scan, const OnlineOptions& options,
                    OnlineStatistics& statistics);
 
-/// Replaces the clusters of a coarse cell by `references` (means about the centre of the cell [m]). `labels` = new
+/// Replaces the clusters of a coarse cell by `centres` (means about the centre of the cell [m]). `labels` = new
 /// cluster of each finer cluster under the cell. A new cluster takes over the occupancy, evidence and parent of the old
 /// cluster with the largest part of its weight.
 template <int D>
-void recluster(OnlineCells<D>& cells, std::uint32_t i, int scale, const std::vector<Gaussian<D>>& references,
+void recluster(OnlineCells<D>& cells, std::uint32_t i, int scale, const std::vector<Gaussian<D>>& centres,
                const std::vector<int>& labels);
 
 /// Counts a hit of a cluster by a scan, at most once per scan, and raises its log-odds.

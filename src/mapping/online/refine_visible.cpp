@@ -23,10 +23,10 @@ struct Touched {
 };
 
 template <int D>
-std::vector<Gaussian<D>> referencesOf(const OnlineCell<D>& cell) {
-  std::vector<Gaussian<D>> references;
-  for (const OnlineCluster<D>& cluster : cell.clusters) references.push_back(cluster.gaussian);
-  return references;
+std::vector<Gaussian<D>> centresOf(const OnlineCell<D>& cell) {
+  std::vector<Gaussian<D>> centres;
+  for (const OnlineCluster<D>& cluster : cell.clusters) centres.push_back(cluster.gaussian);
+  return centres;
 }
 
 /// Returns true if the mean probability of occupancy of the finer clusters under the cell is above one half.
@@ -77,7 +77,7 @@ std::vector<Touched> lookAtTouched(OnlineCells<D>& cells, const OnlineScan<D>& s
     all[n].cell = touched[n];
     OnlineCell<D>& cell = cells.cell(touched[n], scale);
     const std::vector<Gaussian<D>> data = cells.dataUnder(touched[n], scale);
-    all[n].error = cellError(referencesOf(cell), data);
+    all[n].error = cellError(centresOf(cell), data);
     cell.need = cell.spare = 0.0;
     if (data.size() < 2 || !isOccupied(cells, touched[n], scale)) return;
     if (options.method == RefineMethod::Insert) {
@@ -96,10 +96,10 @@ void setParts(OnlineCells<D>& cells, std::uint32_t i, int scale, const Dendrogra
   const std::vector<Gaussian<D>> data = cells.dataUnder(i, scale);
   std::vector<std::vector<Gaussian<D>>> members(parts);
   for (std::size_t j = 0; j < data.size(); ++j) members[static_cast<std::size_t>(of[j])].push_back(data[j]);
-  std::vector<Gaussian<D>> references;
-  references.reserve(parts);
-  for (const std::vector<Gaussian<D>>& part : members) references.push_back(merge(part));
-  recluster(cells, i, scale, references, of);
+  std::vector<Gaussian<D>> centres;
+  centres.reserve(parts);
+  for (const std::vector<Gaussian<D>>& part : members) centres.push_back(merge(part));
+  recluster(cells, i, scale, centres, of);
 }
 
 /// A value and its cell (negative slot). Of equal values, the smaller slot is first.
@@ -137,19 +137,19 @@ template <int D>
 void insertOne(OnlineCells<D>& cells, std::uint32_t i, int scale, ClusterSeed seed_rule) {
   KLKMeansOptions options;
   options.seed_rule = seed_rule;
-  const KLClustering<D> found = insertCluster(cells.dataUnder(i, scale), referencesOf(cells.cell(i, scale)), options);
-  recluster(cells, i, scale, found.references, found.labels);
+  const KLClustering<D> found = insertCluster(cells.dataUnder(i, scale), centresOf(cells.cell(i, scale)), options);
+  recluster(cells, i, scale, found.centres, found.labels);
   cells.cell(i, scale).need = 0.0;  // until the next refinement that touches the cell
 }
 
 }  // namespace
 
 template <int D>
-void recluster(OnlineCells<D>& cells, std::uint32_t i, int scale, const std::vector<Gaussian<D>>& references,
+void recluster(OnlineCells<D>& cells, std::uint32_t i, int scale, const std::vector<Gaussian<D>>& centres,
                const std::vector<int>& labels) {
   const OnlineClusters<D>& old = cells.cell(i, scale).clusters;
-  std::vector<std::vector<double>> shared(references.size(), std::vector<double>(old.size(), 0.0));
-  std::vector<double> areas(references.size(), 0.0);
+  std::vector<std::vector<double>> shared(centres.size(), std::vector<double>(old.size(), 0.0));
+  std::vector<double> areas(centres.size(), 0.0);
   std::size_t next = 0;
   cells.forClustersUnder(i, scale, [&](OnlineCluster<D>& finer) {
     const auto part = static_cast<std::uint32_t>(labels[next++]);
@@ -158,10 +158,10 @@ void recluster(OnlineCells<D>& cells, std::uint32_t i, int scale, const std::vec
     finer.parent = part;
   });
   OnlineClusters<D> clusters;
-  for (std::size_t part = 0; part < references.size(); ++part) {
+  for (std::size_t part = 0; part < centres.size(); ++part) {
     const auto most = std::max_element(shared[part].begin(), shared[part].end());
     clusters.push_back(old[static_cast<std::size_t>(most - shared[part].begin())]);
-    clusters.back().gaussian = references[part];
+    clusters.back().gaussian = centres[part];
     clusters.back().area = areas[part];
   }
   cells.setClusters(i, scale, std::move(clusters));
