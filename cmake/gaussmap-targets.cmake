@@ -49,6 +49,7 @@ function(gaussmap_add_library name)
   add_library(gaussmap::${name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES
     EXPORT_NAME ${name} VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+    INSTALL_RPATH $ORIGIN  # one shared library finds the others in the same folder
     POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET ${gaussmap_visibility} VISIBILITY_INLINES_HIDDEN ON)
   target_include_directories(${target}
     PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>

@@ -176,7 +176,7 @@ TEST_F(OnlineApp, RestoresOnlyWhatFitsTheMap) {
   expectDataError("another resolution", {"restore", own("finer.gmap"), removed, "-o", out});
   succeed({"compress", scene("map.gmap"), "-o", own("small.gmap"), "--max-error", "1"});
   expectDataError("is compressed", {"restore", own("small.gmap"), removed, "-o", out});
-  expectDataError("no cloud of deleted clusters",
+  expectDataError("is not a cloud of deleted clusters",
                   {"restore", scene("map.gmap"), scene("scans") + "/scan0.pcd", "-o", out});
   expectDataError("does not exist", {"restore", own("none.gmap"), removed, "-o", out});
   std::vector<RemovedCluster<3>> clusters = readRemoved(removed);

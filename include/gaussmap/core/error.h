@@ -9,8 +9,8 @@
 
 namespace gaussmap {
 
-/// Reports a file that cannot be used. The message has the form "path: reason". Where helpful, the reason gives the
-/// line or the byte.
+/// Reports a file that cannot be used. The message has the form "path: reason". If the problem is at one place of the
+/// file, the reason often gives its line number or byte offset.
 class GAUSSMAP_API FileError : public std::runtime_error {
  public:
   /// Makes the message "path: what".

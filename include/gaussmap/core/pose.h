@@ -9,16 +9,18 @@
 
 namespace gaussmap {
 
-/// A rigid motion: the pose of a sensor, p_map = R p_sensor + t, or the motion of a map, p_target = R p + t.
+/// A rigid motion. As the pose of a sensor: p_map = R p_sensor + t. As the motion of a map into another frame:
+/// p_target = R p_source + t.
 struct GAUSSMAP_API Pose {
-  /// Type of the quaternion. It is stored unaligned, for the reason given at kStorage in gaussian.h.
+  /// Type of the quaternion. It is stored unaligned, so that its layout does not depend on the -m flags of the compiler
+  /// (see kStorage in gaussian.h).
   using Rotation = Eigen::Quaternion<double, Eigen::DontAlign>;
 
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();  ///< t, the sensor's origin [m], map frame
   Rotation rotation = Rotation::Identity();               ///< R as a quaternion, sensor frame to map frame
 
-  /// Returns a point of the sensor frame in the map frame [m]. The quaternion must have unit length, as for all
-  /// operators.
+  /// Transforms a point from the sensor frame to the map frame [m]. As for all members of this class, the quaternion
+  /// must have unit length.
   Eigen::Vector3d operator*(const Eigen::Vector3d& point) const { return rotation * point + translation; }
   /// Returns the composition of two poses: `other` is applied first, then this pose.
   Pose operator*(const Pose& other) const;
@@ -26,11 +28,12 @@ struct GAUSSMAP_API Pose {
   Pose inverse() const;
 };
 
-/// Maximum difference between the norm of a quaternion and 1. Text files round quaternions to few digits; a larger
-/// difference means that the numbers are not a quaternion.
+/// Maximum difference between the norm of a quaternion and 1. It allows for quaternions that a text file gives with few
+/// decimals. A larger difference means that the numbers are wrong, for example columns in the wrong order.
 inline constexpr double kQuaternionTolerance = 1e-3;
 
-/// Returns the fault of a pose from a file, or an empty text if there is none.
+/// Checks a pose, for example one read from a file. Returns a text that describes its fault, or an empty text if it has
+/// none.
 ///
 /// A pose has a fault if its translation or quaternion is not finite, if its quaternion is zero, or if the norm of the
 /// quaternion differs from 1 by more than kQuaternionTolerance.

@@ -11,16 +11,18 @@ namespace gaussmap {
 
 /// Returns the part of a map that lies inside a region.
 ///
-/// The function `isInside` gets the mean of each Gaussian in a leaf cell [m, map frame]. Gaussians inside are kept
-/// unchanged, with their exact moments. A coarse cluster with some of its children outside becomes the moment match of
-/// the remaining children. If a map is cut into disjoint parts, mergeMaps() restores the finest scale of the whole map.
+/// `isInside` receives the mean [m, map frame] of each Gaussian in a leaf cell (see GaussianMap::isLeaf()) and returns
+/// true to keep the Gaussian. Kept Gaussians do not change, and keep their exact moments. A coarse Gaussian becomes the
+/// moment match of its remaining children if some are lost, and is deleted if all are lost. If a map
+/// that is not compressed is cut into disjoint parts, mergeMaps() restores its finest scale exactly. The coarse scales
+/// can differ.
 template <int D>
 GAUSSMAP_API GaussianMap<D> crop(const GaussianMap<D>& map, const std::function<bool(const Vector<D>&)>& isInside);
 
 /// A polygon in the xy plane. A point at any height is inside if its (x, y) is inside.
 ///
-/// The corners are in order, clockwise or counter-clockwise. If sides cross, the even-odd rule applies. Two polygons
-/// that share a side have no point in common.
+/// The corners are in order, clockwise or counter-clockwise. If sides cross, the even-odd rule applies. If two adjacent
+/// polygons share a side (with the same two corners), a point on this side is inside exactly one of them.
 class GAUSSMAP_API Polygon {
  public:
   /// Makes a polygon from its corners [m]. Throws std::invalid_argument if there are fewer than three corners or a

@@ -14,7 +14,7 @@ namespace gaussmap {
 
 /// The points that GaussianMapFilter returns, one per Gaussian.
 enum class FilterOutput {
-  Means,   ///< the means, which are closest to the input
+  Means,   ///< the means of the Gaussians: closer to the input than samples, but not measured
   Samples  ///< the input points nearest to the means, so every output point was measured
 };
 
@@ -22,12 +22,14 @@ enum class FilterOutput {
 struct GaussianMapFilterOptions {
   std::size_t budget = 10000;  ///< maximum number of points kept, >= 1
   /// If > 0: keeps the smallest number of points (within the budget) for which 95 % of the input lie within this
-  /// distance [m]. If 0: the budget decides.
+  /// distance of their output point [m]. If 0: keeps as many points as the budget allows.
   double max_error = 0.0;
   FilterOutput output = FilterOutput::Means;  ///< means or samples
-  /// Where the output is dense. SplitRule::Shape: few points on planes; max_error is then the distance from the plane.
+  /// How the output is distributed. SplitRule::Distance: every input point gets an output point nearby.
+  /// SplitRule::Shape: few points on planes, many on curved surfaces. max_error is then the distance from the plane
+  /// through the output point.
   SplitRule detail = SplitRule::Distance;
-  int rounds = 3;   ///< SplitPointsOptions::rounds
+  int rounds = 3;   ///< rounds of k-means after the splitting, SplitRule::Distance only, >= 0
   int threads = 0;  ///< 0 = all cores
 };
 
@@ -38,13 +40,14 @@ struct GaussianMapFilterOptions {
 /// - With FilterOutput::Means, all other fields are averaged over these points: colours by channel, integers rounded,
 ///   normals by direction, non-finite values ignored. A label is that of the point nearest to the mean.
 /// - With FilterOutput::Samples, output points are unchanged input points.
-/// - An output point without a normal gets the normal and curvature of the input's surface (see pointNormals()), seen
-///   from sensor_origin_. This applies to point types with these fields.
+/// - An output point without a normal gets the normal and curvature of the input's surface (see pointNormals()). This
+///   normal points towards sensor_origin_. All other normals are scaled to unit length, also for FilterOutput::Samples.
+///   This applies to point types with these fields.
 ///
 /// As with pcl::VoxelGrid, the output is not organised and has only finite points. setIndices() selects input points.
 /// getRemovedIndices(), if enabled in the constructor, returns the non-finite input points and those that are not
-/// nearest to the mean of their Gaussian. Without an input cloud the filter returns nothing. If an option is out of
-/// range, it prints an error and returns an empty cloud.
+/// nearest to the mean of their Gaussian. Without an input cloud, the filter prints an error and does not change the
+/// output. If an option is out of range, it prints an error and returns an empty cloud.
 template <typename PointT>
 class GAUSSMAP_API GaussianMapFilter : public pcl::Filter<PointT> {
  public:
@@ -60,24 +63,26 @@ class GAUSSMAP_API GaussianMapFilter : public pcl::Filter<PointT> {
 
   /// Sets the maximum number of points kept.
   void setBudget(std::size_t points) { options_.budget = points; }
-  /// Sets the distance from an output point within which 95 % of the input shall lie [m]; 0: the budget decides. The
-  /// budget applies in both cases; error() returns the distance that it allowed.
+  /// Sets the maximum distance of 95 % of the input from their output points [m]; 0: as many points as the budget
+  /// allows. If the budget is too small for this distance, the budget decides, and error() is larger than the distance.
   void setMaxError(double metres) { options_.max_error = metres; }
   /// Selects means or samples.
   void setOutput(FilterOutput output) { options_.output = output; }
-  /// Selects where the output is dense.
+  /// Selects how the output is distributed, see GaussianMapFilterOptions::detail.
   void setDetail(SplitRule detail) { options_.detail = detail; }
   /// Sets the number of threads; 0 = all cores.
   void setNumberOfThreads(int threads) { options_.threads = threads; }
   /// Returns the options.
   const GaussianMapFilterOptions& options() const { return options_; }
 
-  /// Returns, for each input point of the last filter(), the index of the output point that represents it, or -1.
+  /// Returns, for each input point of the last filter(), the index of the output point that represents it. The index is
+  /// -1 for points that are not finite or not selected by setIndices(), or if an option is out of range.
   const std::vector<std::int32_t>& getLabels() const { return labels_; }
   /// Returns the Gaussian of each output point of the last filter(), in the frame of the cloud. A covariance can be
   /// singular.
   const std::vector<Gaussian<3>>& getGaussians() const { return gaussians_; }
-  /// Returns the error of the last filter(): 95 % of the input lie within this distance of their output point [m].
+  /// Returns the error of the last filter(): 95 % of the input lie within this distance of their output point [m]. With
+  /// SplitRule::Shape, the distance is that from the plane through this point.
   double error() const { return error_; }
 
  protected:

@@ -66,7 +66,7 @@ class LazyKdTree : public pcl::search::KdTree<PointT> {
 /// Options of GaussianMapRegistration.
 struct GaussianMapRegistrationOptions {
   MapOptions map{0.5, 3, 4, 0.0};    ///< of the map that is built from a target cloud
-  double budget = 3.0;               ///< Gaussians per cell of its coarse scales, PerCell::gaussians
+  double budget = 3.0;               ///< maximum average of Gaussians per cell of its coarse scales, see PerCell
   RegistrationOptions registration;  ///< of registerScan()
 };
 
@@ -77,9 +77,10 @@ struct GaussianMapRegistrationOptions {
 ///
 /// As with PCL's own classes, non-finite points are ignored, and setIndices() selects points of the source. Errors are
 /// printed, and hasConverged() is then false; final transformation and output are those of the guess.
-/// setMaximumIterations(), setTransformationEpsilon() (a squared length) and setTransformationRotationEpsilon() (a
-/// cosine) apply to each step from coarse to fine. The constructor takes their values from the options. PCL's settings
-/// of correspondences have no effect. The kd-tree of the target is built at the first call of getFitnessScore().
+/// setMaximumIterations() applies to each step from coarse to fine. setTransformationEpsilon() (a squared length) and
+/// setTransformationRotationEpsilon() (a cosine) apply to the last step; earlier steps can end at larger changes. The
+/// constructor sets all three from the RegistrationOptions; the setters replace these values. PCL's settings of
+/// correspondences have no effect. The kd-tree of the target is built at the first call of getFitnessScore().
 template <typename PointSource, typename PointTarget, typename Scalar = float>
 class GAUSSMAP_API GaussianMapRegistration : public pcl::Registration<PointSource, PointTarget, Scalar> {
   using Base = pcl::Registration<PointSource, PointTarget, Scalar>;
@@ -98,13 +99,14 @@ class GAUSSMAP_API GaussianMapRegistration : public pcl::Registration<PointSourc
 
   /// Sets the target cloud. The next align() builds its map. An empty cloud is refused and changes nothing.
   void setInputTarget(const PointCloudTargetConstPtr& cloud) override;
-  /// Sets the target map. The means of its leaves become getInputTarget(). If the map is null or empty, prints an
-  /// error, changes nothing and returns false.
+  /// Sets the target map. The means of its leaves() become the target cloud, for getInputTarget() and
+  /// getFitnessScore(). If the map is null or empty, prints an error, changes nothing and returns false.
   bool setTargetMap(const MapConstPtr& map);
   /// Sets the target map from a .gmap file or a PCD file of Gaussians. If the file cannot be read, prints an error,
   /// changes nothing and returns false.
   bool setTargetMap(const std::filesystem::path& path);
-  /// Returns the target map, and builds it from the target cloud if necessary. Returns null if there is no target.
+  /// Returns the target map, and builds it from the target cloud if necessary. Returns null if there is no target, or
+  /// prints an error and returns null if the map cannot be built.
   MapConstPtr getTargetMap();
 
   /// Sets the side of the finest cells of the map that is built from a target cloud [m], as in
@@ -115,8 +117,8 @@ class GAUSSMAP_API GaussianMapRegistration : public pcl::Registration<PointSourc
   /// Sets the number of threads; 0 = all cores.
   void setNumberOfThreads(int threads) { options_.registration.threads = threads; }
 
-  /// Returns the covariance of (x, y, z [m], rotation vector about the origin of the source [rad]), along the axes of
-  /// the target. It is zero if there is no information about the pose.
+  /// Returns the covariance of the pose: translation x y z [m], then rotation vector about the origin of the source
+  /// [rad], along the axes of the target. Zero does not mean "exact": there is no information about the pose.
   const PoseCovariance& getPoseCovariance() const { return result_.covariance; }
   /// Returns true if some direction of the pose is unobservable, for example along a corridor, or if there is no
   /// result.
@@ -139,7 +141,7 @@ class GAUSSMAP_API GaussianMapRegistration : public pcl::Registration<PointSourc
   typename Tree::LazyPtr lazy_tree_;
 };
 
-/// Builds the map to which a source cloud is aligned from a target cloud. Throws like build() and refine().
+/// Builds the target map of GaussianMapRegistration from a target cloud. Throws like build() and refine().
 GAUSSMAP_API GaussianMapOctree buildTargetMap(const std::vector<Eigen::Vector3d>& points,
                                               const GaussianMapRegistrationOptions& options);
 /// Converts a rigid 4 x 4 transform to a pose. Throws std::invalid_argument if the matrix is not a rigid transform.

@@ -27,18 +27,21 @@ struct GAUSSMAP_API PointNormalOptions {
 
 /// Computes the surface normal at each query point and returns the number of queries without a normal.
 ///
-/// The normal is that of the Gaussian of all surface points in a block of cells around the query. The function takes
-/// the finest block with at least min_points points, or all points if the cloud has fewer. The cells are those of an
-/// octree. Blocks are 3 or 5 cells wide; in a block of 5, a cell is two off the middle along at most one axis. A block
-/// is therefore at most 1.8 times as wide as the next finer one. The function does not search for neighbours: it needs
-/// one sort, one sum per cell, and one plane per block.
+/// The normal is the direction in which the surface points in a block of cells around the query vary least. The cells
+/// are those of an octree. A block is a cube of 3 x 3 x 3 cells, or of 5 x 5 x 5 cells without those along the edges of
+/// the cube. A block is therefore at most 5/3 times as wide as the next finer one. From coarse to fine, the function
+/// tests blocks of 3 until one has fewer than 2.5 min_points points, because finer ones rarely have enough. It takes
+/// this block, the block of 5 around it, or the last block of 3 before it: the finest with at least min_points points.
+/// If the cloud has fewer, it takes all points. It does not search for neighbours: it needs one sort, one sum per cell,
+/// and one plane per block.
 ///
 /// The curvature is the smallest variance divided by the sum of all three, 0 to 1/3, as in PCL. Query i writes record i
 /// of `normals`: a unit normal and the curvature. The record is NaN if the query is not finite or the points of its
 /// block lie on a line. Non-finite surface points are ignored.
 ///
-/// Cells are not split below 2^-21 of the extent of the cloud. At both ends of each axis, the outermost 1 % of the
-/// points does not count for this extent if it lies far away. Throws std::invalid_argument if an option is out of range
+/// Cells are not split below 2^-21 of the extent of the cloud. Outliers do not widen this extent much: if the cloud is
+/// over 210 times as wide as its part without the outermost 1 % of the points at both ends of each axis, the extent is
+/// 21 times the width of this part. Throws std::invalid_argument if an option is out of range
 /// (the message names it) or there are 2^31 points or more.
 GAUSSMAP_API std::size_t pointNormals(const PointsView& surface, const PointsView& queries, const NormalsView& normals,
                                       const PointNormalOptions& options = {});

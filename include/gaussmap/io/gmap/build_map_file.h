@@ -21,9 +21,9 @@ struct BuildMapFileOptions {
   /// Approximate memory limit [bytes], >= kMinBuildMemory. The scans being read and the memory of the program itself
   /// are not included.
   std::size_t max_memory = std::size_t{1} << 30;
-  Budget budget = PerCell{};  ///< PerCell or MaxGaussians
-  RefineOptions refine;       ///< agglomeration without curves; its `threads` applies to the whole build
-  SaveOptions save;           ///< of the file, with Precision::Exact
+  Budget budget = PerCell{};  ///< must be PerCell or MaxGaussians
+  RefineOptions refine;       ///< must be RefineMethod::Agglomerate without curves; `threads` is for the whole build
+  SaveOptions save;           ///< must be Precision::Exact; `threads` is not used
 };
 
 /// The result of buildMapFile().
@@ -35,17 +35,20 @@ struct BuiltMapFile {
 
 /// Builds a map file from scans in limited memory, for maps that do not fit into memory.
 ///
-/// The file is bit-identical to the file that save() writes of refine(build(accumulateScans())) with the same options
-/// and metadata.
+/// The file is bit-identical to the result of accumulateScans(), build(), refine() and save() with the same options and
+/// metadata.
 ///
-/// When the sums of points reach their share of the memory, they are written by tile to an anonymous temporary file in
-/// the folder of the map. The scales are built from fine to coarse: batches of tiles are read back, refined and
-/// compressed. The budget applies to all clusters of a scale at once. The dendrograms therefore wait in the temporary
-/// file, and a few passes over the gains of their merges find the smallest gain that is used. One tile must always fit
-/// into memory: it has at least 32 cells along a side, of which only occupied cells need memory.
+/// While scans are read, each thread writes its sums of points to a temporary file whenever they fill its share of the
+/// memory, and at the end. The file has no name and lies in the folder of the map; its data are grouped by tile. The
+/// scales are built from fine to coarse: batches of tiles are read back, refined and compressed. Only one batch is in
+/// memory, but the budget applies to the whole scale. The merges of all batches are therefore kept in the temporary
+/// file, and a few passes over their gains decide which of them are undone (see refine()). Tiles are never split, so
+/// memory exceeds the limit if a single tile is too large. A tile has at least 32 cells along a side, of which only
+/// occupied cells need memory.
 ///
 /// `metadataOf(counts)` returns the metadata of the map. Throws like accumulateScans(), save() and refine(). Also
-/// throws std::invalid_argument for RefineMethod::Insert, which needs all cells at once, and for too little memory.
+/// throws std::invalid_argument if `max_memory` is too small, if the resolutions of `reading` and `map` differ, or if
+/// an option needs the whole map at once: RefineMethod::Insert, curves, MaxBytes, MaxError or Precision::Finished.
 GAUSSMAP_API BuiltMapFile buildMapFile(const Scans& scans, const AccumulateOptions& reading, const MapOptions& map,
                                        const std::filesystem::path& path,
                                        const std::function<MapMetadata(const PointCounts&)>& metadataOf,

@@ -16,8 +16,8 @@ namespace gaussmap {
 
 /// Options of updateMap().
 struct UpdateOptions {
-  /// Maximum number of Gaussians of a coarse scale, as a multiple of its cells, >= 1; std::nullopt: the present
-  /// multiple of the scale.
+  /// Maximum number of Gaussians per cell of a coarse scale, on average, >= 1; std::nullopt: the present average of the
+  /// scale. A scale can exceed it: unchanged cells keep their Gaussians, and each rebuilt cell gets at least one.
   std::optional<double> budget;
   MergeCost merge_cost = MergeCost::Volume;     ///< as in RefineOptions
   int compression = SaveOptions().compression;  ///< zstd level of changed tiles
@@ -32,28 +32,30 @@ struct MapUpdate {
   std::size_t tiles = 0;                      ///< number of tiles in the file
 };
 
-/// Adds points to a map file. It reads only the tiles below the coarsest cells with new points and writes only the
-/// tiles that change.
+/// Adds points to a map file. It decodes only the tiles that hold a coarsest cell with new points or cells below it. It
+/// encodes only the tiles that change.
 ///
 /// The finest scale is bit-identical to that of a map built from all points. Coarse cells with new points below them
-/// are rebuilt; all other cells stay unchanged. The rebuilt cells share the part of the scale's budget that the
-/// unchanged cells leave. A map built from all points shares the whole budget among all cells. With one Gaussian per
-/// cell (budget 1) the coarse scales are therefore identical; with a larger budget, refine() makes them identical.
+/// are rebuilt; all other cells stay unchanged. The rebuilt cells share what the unchanged cells leave of the scale's
+/// budget. In a map built from all points, all cells share the whole budget, so its coarse scales can differ. They are
+/// identical if the map has one Gaussian per cell and keeps this budget (1). Otherwise, load the updated map and call
+/// refine(): the result is identical to that of refine() for a map built from all points.
 ///
-/// In a map with occupancy, finest cells keep their log-odds, and new cells get kMaxOccupancy. New points are no
-/// evidence that something else is gone. The log-odds of a rebuilt coarse cluster are the maximum over its children.
+/// In a map with occupancy, finest cells keep their log-odds, and new cells get kMaxOccupancy. No log-odds of a finest
+/// cell are lowered, because points alone do not show that something else is gone. The log-odds of a rebuilt coarse
+/// cluster are the maximum over its children.
 ///
 /// The update is atomic: readers see either the old or the new file, also after a crash. The file is copied, changed
-/// and renamed, so the disk holds both for a short time. Only one writer can run at a time. `edit` can change the
-/// metadata given to save(). Throws FileError if the file cannot be read or written, or if the map accepts no more
-/// points (see GaussianMap::acceptsScans()). Throws std::invalid_argument if the cells of `added` differ from those of
-/// the map, or if the budget is below 1.
+/// and renamed, so the disk holds both for a short time. While one writer runs, any other writer throws FileError.
+/// `edit`, if given, receives the metadata once given to save() and can change them. Throws FileError if the file
+/// cannot be read or written, or if the map accepts no more points (see GaussianMap::acceptsScans()). Throws
+/// std::invalid_argument if the resolution of `added` differs from that of the map, or if the budget is below 1.
 template <int D>
 GAUSSMAP_API MapUpdate updateMap(const std::filesystem::path& path, const MomentGrid<D>& added,
                                  const UpdateOptions& options = {}, const std::function<void(MapMetadata&)>& edit = {});
 
-/// Returns the options of a map file to which points can be added. Count the points in cells of this resolution. Throws
-/// FileError if the file is not a map, or if the map accepts no more points.
+/// Returns the options of a map file, if points can be added to it. The MomentGrid for updateMap() must have the same
+/// resolution. Throws FileError if the file is not a map, or if the map accepts no more points.
 template <int D>
 GAUSSMAP_API MapOptions growingMapOptions(const std::filesystem::path& path);
 

@@ -29,7 +29,7 @@ enum class LearningRate {
 /// The points of a cluster that are tested against a range image.
 enum class OccupancySamples {
   Mean,   ///< the mean of the cluster
-  Random  ///< random samples, one per pixel that can see the cluster, Yguel 2009 eq. (1): same decisions, but slower
+  Random  ///< random samples, one per pixel that can see the cluster (at most 100), Yguel 2009 eq. (1): slower
 };
 
 /// Options of OnlineMapper.
@@ -45,23 +45,26 @@ struct GAUSSMAP_API OnlineOptions {
   OccupancySamples samples = OccupancySamples::Mean;  ///< which points of a cluster are tested
   /// Projection of every scan; std::nullopt: determined from the points, and again if a scan does not fit it.
   std::optional<Projection> projection;
-  std::optional<double> no_return_is_free;  ///< pixels without return are free space up to this range [m]
+  /// Pixels without return are free space up to this range [m]; std::nullopt: they show nothing.
+  std::optional<double> no_return_is_free;
   std::vector<double> max_ranges;  ///< per scale: cells farther from the sensor are not tested [m]; empty: no limit
   int occupancy_every = 1;         ///< the occupancy is updated every this many scans, >= 1
-  /// Number of recent scans that are kept, >= 0. Their range images test new cells, and their sums serve `shared`.
+  /// Number of recent scans that are kept, >= 0. Their range images show whether beams have passed through a new cell
+  /// before. Their sums of points per cell are used by `shared`, which needs at least 1.
   int look_back = 10;
 
-  /// Deletes clusters with log-odds below 0 and the other cells of their objects (see `link` and `reach`).
+  /// Deletes finest clusters with log-odds below 0 and the other cells of their objects, then coarse clusters without
+  /// children. The object of such a cell: connected cells that were hit only between its first and its last hit.
   bool forget = true;
-  double link = MovingCellOptions().link;    ///< cells within this distance of a deleted cell are connected to it [m]
-  double reach = MovingCellOptions().reach;  ///< maximum distance of an object's cells from its deleted cells [m]
-  /// Also deletes the points of an object in cells that it shares with a surface, as far as the last look_back scans
-  /// saw them. LearningRate::SampleMean only.
+  double link = MovingCellOptions().link;    ///< from one connected cell to the next, at most this [m] or one cell
+  double reach = MovingCellOptions().reach;  ///< maximum distance of these cells from that with log-odds below 0 [m]
+  /// In cells beside a deleted object that also hold a surface (floor or wall): deletes the points off the surface from
+  /// those of the last look_back scans that can have seen the object. Needs `forget` and LearningRate::SampleMean.
   SharedCellOptions shared;
 
   int refine_every = 10;  ///< the coarse scales are refined every this many scans; 0 = never
-  /// p, maximum number of clusters added per scale and refinement; 0: as many as the budget allows. With the paper's
-  /// 4, a drive of 20 scans ends at a third of its budget.
+  /// p, maximum number of clusters added per scale and refinement; 0: as many as the budget allows. With p = 4, as in
+  /// the paper, the coarse scales have only a third of the Gaussians of their budget after a drive of 20 scans.
   std::size_t refine_cells = 0;
   double budget = 3.0;  ///< maximum Gaussians of a coarse scale after a refinement, as a multiple of its cells, >= 1
   RefineMethod method = RefineMethod::Agglomerate;        ///< how the clusters of a coarse cell are found
@@ -72,15 +75,16 @@ struct GAUSSMAP_API OnlineOptions {
   ///
   /// - Cells: three scales, ratio 10, finest side 0.05 m in 2-D, 0.1 m in 3-D (sec. 6).
   /// - Learning: the rate depends on the occupancy, eq. (5), between 5e-4 and 5e-2, o_max = 10 (sec. 4.4, Algorithm 1).
-  /// - Occupancy: B samples per cluster, eq. (1), for every scan in 2-D and every third scan in 3-D (sec. 4.1, 6).
+  /// - Occupancy: random samples of each cluster, their number B from eq. (1), for every scan in 2-D and every third
+  ///   scan in 3-D (sec. 4.1, 6).
   /// - Deletion: clusters of low occupancy, without the other cells of their objects (sec. 5.3).
   /// - Refinement: every 10 scans, the p = 4 cells of largest error of each scale get one cluster each, within the
-  ///   budget. The Gaussian of largest distortion itself is the seed (sec. 5.1, 6, Algorithm 2).
+  ///   budget. The new cluster starts as a copy of the Gaussian of largest distortion (sec. 5.1, 6, Algorithm 2).
   ///
-  /// The paper does not give all values. These options keep their defaults: the log-odds per hit and miss, the deletion
-  /// threshold, the test whether a beam passes through a point, and the size of the budget. Two details differ from the
-  /// paper: the error of eq. (6) has no factor (1 - eps), and a refinement can also choose cells that an earlier scan
-  /// touched. Throws std::invalid_argument for any other value of `dimensions`.
+  /// The paper does not give the log-odds per hit and miss, the deletion threshold, the test whether a beam passes
+  /// through a point, and the size of the budget. Here they have the defaults of this library. Two details differ from
+  /// the paper: the error of eq. (6) has no factor (1 - eps), and a refinement can also choose cells that an earlier
+  /// scan touched. Throws std::invalid_argument for any other value of `dimensions`.
   static OnlineOptions yguel2009(int dimensions);
 };
 
@@ -96,7 +100,7 @@ struct RemovedCluster {
   CellMoments<D> moments;  ///< exact moments for restore(); finest scale and LearningRate::SampleMean only
   double log_odds = 0.0;   ///< occupancy at the time of the deletion
   Evidence evidence;       ///< hits and misses
-  std::uint32_t scan = 0;  ///< number of the scan after which the cluster was deleted
+  std::uint32_t scan = 0;  ///< number of the last scan before the deletion, from 0
 };
 
 /// Reports the work of one call of OnlineMapper::add().
@@ -104,11 +108,11 @@ struct OnlineStatistics {
   PointCounts points;             ///< accepted and dropped points of the scan
   std::size_t cells_touched = 0;  ///< finest cells with points of the scan
   std::size_t cells_new = 0;      ///< touched cells that were not occupied before
-  std::size_t cells_tested = 0;   ///< cells of the coarser scales that the culling tested
-  std::size_t cells_visited = 0;  ///< finest cells that remained after the culling
+  std::size_t cells_tested = 0;   ///< coarse cells tested for whether beams can have passed through any part of them
+  std::size_t cells_visited = 0;  ///< finest cells in coarse cells that passed this test
   std::size_t deleted = 0;        ///< deleted clusters of all scales, including parts of clusters
   std::size_t added = 0;          ///< clusters added by the refinement
-  std::vector<double> errors;     ///< per scale: mean error, eq. (6), of the touched cells; empty without refinement
+  std::vector<double> errors;     ///< per scale: mean error, eq. (6), of the touched cells; empty if not refined now
   double update_time = 0.0,       ///< duration of the update by points [s]
       image_time = 0.0,           ///< duration of making the range image [s]
       look_back_time = 0.0,       ///< duration of testing new cells against earlier range images [s]
@@ -136,9 +140,10 @@ class GAUSSMAP_API OnlineMapper {
 
   /// Adds one scan to the map. Only returns within max_range are used.
   ///
-  /// For D = 2 the z axis of the sensor must be vertical, and the points are projected along it into the plane z = 0.
-  /// Throws std::out_of_range if a point lies beyond the range of 32-bit cell indices (the message gives the point);
-  /// the scan is then not counted.
+  /// For D = 2, points are transformed to the map frame and lose their z coordinate. The z axis of the sensor must
+  /// therefore be parallel to that of the map, which is not checked. Throws std::out_of_range if a point lies beyond
+  /// the range of 32-bit cell indices (the message gives the point). The map is then unchanged, and the scan is not
+  /// counted.
   OnlineStatistics add(Scan scan);
 
   /// Puts a deleted cluster of the finest scale back, with the maximum log-odds: the caller knows that it is still
@@ -150,7 +155,7 @@ class GAUSSMAP_API OnlineMapper {
   GaussianMap<D> map() const;
   /// Returns the number of scans added.
   std::size_t scans() const;
-  /// Returns the options, with the automatic noise filled in.
+  /// Returns the options. If map.noise was 0, it is replaced by its automatic value (resolution / 20).
   const OnlineOptions& options() const;
   /// Returns the approximate number of bytes in use.
   std::size_t memoryBytes() const;
