@@ -15,6 +15,14 @@ esac
 
 python3 test/layers.py
 
+# Habits that make a text hard to read. CONTRIBUTING.md says what to write instead.
+habits='\banew\b|\bthat (is|are) none\b|\bstands? for\b|\bwhoever\b|\bhoped for\b|never shows? in|to the last bit|\*\*wanted|\(wanted [0-9]'
+if git grep -nIiE "$habits" -- ':!test/lint.sh' ':!test/data' ':!test/fuzz/corpus'; then
+  echo "lint: write these sentences in plain English" >&2
+  exit 1
+fi
+echo "words: no sentence of the worst kinds"
+
 # Every public header compiles alone.
 read -ra system < <(pkg-config --cflags-only-I eigen3 pcl_common | sed 's/-I/-isystem /g')
 (cd include && find gaussmap -name '*.h' | sort) | xargs -P 2 -I{} \
