@@ -9,11 +9,14 @@
 
 namespace gaussmap {
 
-/// The new cluster centre that Algorithm 2 places at the Gaussian of largest distortion (lines 5, 18, 21).
+/// How a new cluster centre is made, Yguel 2009, Algorithm 2, lines 5, 18 and 21. The centre is placed at the Gaussian
+/// of largest distortion: the one with the largest divergence from the centre of its cluster.
 enum class ClusterSeed {
-  /// The mean of the Gaussian, with the covariance of the cluster that it leaves. Its neighbours join the new cluster.
+  /// The centre has the mean of this Gaussian and the covariance of the cluster that contained it. Neighbours of the
+  /// Gaussian can then join the new cluster.
   ParentCovariance,
-  /// The Gaussian itself, as in the paper. Its small covariance keeps all other Gaussians out of the new cluster.
+  /// The centre is a copy of this Gaussian, as in the paper. Its small covariance keeps all other Gaussians out of the
+  /// new cluster.
   InputGaussian,
 };
 
@@ -30,10 +33,10 @@ struct KLKMeansOptions {
 /// The result of k-means: a partition of n Gaussians.
 template <int D>
 struct KLClustering {
-  std::vector<Gaussian<D>> centres;  ///< k' <= k cluster centres, each the moment match of its members; none empty
-  std::vector<int> labels;           ///< n, labels[i] in [0, k')
+  std::vector<Gaussian<D>> centres;  ///< k' cluster centres, at most k; each is the moment match of its members
+  std::vector<int> labels;           ///< per Gaussian: the index of its cluster centre, in [0, k')
   double distortion = 0.0;           ///< sum_j alpha_j KL(z_j || w_label(j)) [nat], Yguel 2009 eq. (7)
-  int iterations = 0;                ///< of k-means, summed over all runs, including rejected swaps
+  int iterations = 0;                ///< number of iterations of all k-means runs, including those of rejected swaps
   int swaps = 0;                     ///< accepted rounds of the swap loop
   bool converged = true;             ///< false: the run that gave this result stopped at max_iterations
 };
@@ -41,17 +44,18 @@ struct KLClustering {
 /// Weighted k-means over Gaussians with the KL divergence as distance, Yguel 2009 sec. 5.2.1 (after Davis & Dhillon
 /// 2006).
 ///
-/// Each input Gaussian joins the nearest cluster centre under eq. (8); ties go to the smaller label. Each centre
-/// becomes the moment match of its members, eqs. (9), (10). The run ends when the labels stay the same or the
-/// distortion, eq. (7), falls by less than the tolerance. A centre that loses its last member is dropped.
-/// The algorithm is single-threaded and deterministic.
+/// Each input Gaussian joins the nearest cluster centre. The distance is the KL divergence, eq. (8); ties go to the
+/// smaller label. Each centre then becomes the moment match of its members, eqs. (9), (10). The run ends when the
+/// labels stay the same or the distortion, eq. (7), falls by less than the tolerance. A centre that loses its last
+/// member is dropped. The algorithm is single-threaded and deterministic.
 ///
 /// Weights must be positive and finite, means finite, and covariances positive definite. The functions throw
 /// std::invalid_argument for a weight or mean and std::domain_error for a covariance; the message gives the index of
 /// the Gaussian. Empty input gives an empty result.
 ///
-/// One assignment is a product of an n x F and an F x k matrix, F = 1 + D + D (D + 1) / 2. Its rounding error is about
-/// 1e-16 (extent of the input / smallest standard deviation of a centre)^2 nat, also far from the origin.
+/// The divergences between all n Gaussians and all k centres are computed as one matrix product. Their rounding error
+/// is about 1e-16 (L / s)^2 nat, with L = extent of the input and s = smallest standard deviation of a centre. The
+/// distance of the input from the origin has no influence on this error.
 template <int D>
 class GAUSSMAP_API KLKMeans {
  public:
@@ -73,16 +77,18 @@ class GAUSSMAP_API KLKMeans {
 
 /// Adds one cluster to a partition, Yguel 2009, Algorithm 2.
 ///
-/// K-means runs from the current centres and a new centre at the Gaussian of largest distortion (see ClusterSeed).
-/// While the distortion falls, the swap loop then moves the centre that is needed least to the Gaussian of largest
-/// distortion.
+/// K-means starts from the current centres and one new centre at the Gaussian of largest distortion (see ClusterSeed).
+/// Then the swap loop begins. Each round moves one centre to the Gaussian of largest distortion and runs k-means again.
+/// The moved centre is one of the two closest centres or a random one. The loop ends when a round does not reduce the
+/// distortion, or after KLKMeansOptions::max_swaps rounds.
 ///
 /// - `current_centres` are the k - 1 current cluster centres. If there are none, the result is one cluster.
-/// - The result has at most k clusters. Duplicates in the input can prevent an additional cluster.
+/// - The result has at most k clusters. It can have fewer, for example if input Gaussians are equal.
 /// - The distortion never exceeds that of the current centres.
 /// - If k >= n, each Gaussian becomes its own cluster, with distortion 0.
 ///
-/// KLKMeansOptions::k is not used. Input and errors are the same as for KLKMeans.
+/// Here k is the number of current centres + 1; KLKMeansOptions::k is not used. Input and errors are the same as for
+/// KLKMeans.
 template <int D>
 GAUSSMAP_API KLClustering<D> insertCluster(const std::vector<Gaussian<D>>& data,
                                            const std::vector<Gaussian<D>>& current_centres,

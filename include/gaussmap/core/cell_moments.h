@@ -16,18 +16,19 @@ inline constexpr std::int64_t kStepsPerCell = std::int64_t{1} << 16;
 /// Holds exact sums over the points of one cell, in integers.
 ///
 /// The sums are bit-identical for any order of the points, any number of threads, and any split into parts that are
-/// merged later. An offset from the cell's centre lies in [-32768, 32767] steps, so a product of two has at most
-/// 30 bits. A cell therefore holds up to 2^33 - 1 points. For more points add() and operator+=() throw
-/// std::length_error and leave the sums unchanged.
+/// merged later. An offset from the cell's centre lies in [-32768, 32767] steps, so a product of two offsets is at most
+/// 2^30. The sum of 2^33 - 1 such products fits 64 bits, so a cell holds up to 2^33 - 1 points. For more points add()
+/// and operator+=() throw std::length_error and leave the sums unchanged.
 template <int D>
 struct GAUSSMAP_API CellMoments {
   static constexpr int kProducts = D * (D + 1) / 2;                        ///< number of products per point
   static constexpr std::int64_t kMaxPoints = (std::int64_t{1} << 33) - 1;  ///< maximum number of points per cell
   using Offset = std::array<std::int32_t, D>;                              ///< point minus the cell's centre [steps]
 
-  std::int64_t count = 0;                         ///< number of points
-  std::array<std::int64_t, D> sum{};              ///< sum of offsets [steps]
-  std::array<std::int64_t, kProducts> product{};  ///< sum of products, upper triangle by rows: xx xy xz yy yz zz
+  std::int64_t count = 0;             ///< number of points
+  std::array<std::int64_t, D> sum{};  ///< sum of offsets [steps]
+  std::array<std::int64_t, kProducts>
+      product{};  ///< sum of products [steps^2], upper triangle by rows: xx xy xz yy yz zz
 
   /// Adds one point. Throws std::length_error if the cell is full.
   void add(const Offset& offset) {
@@ -79,8 +80,8 @@ struct GAUSSMAP_API CellMoments {
   /// Returns the Gaussian of the cell, with the mean relative to the cell's centre.
   ///
   /// The covariance is the sample covariance + noise^2 I, which is positive definite for noise > 0 [m]. The weight is
-  /// `count`. The noise floor is added to the eigenvalues; the eigenvalues are not clamped. Moment matching of cells
-  /// then gives, at every scale, the moments of all their points plus the same floor.
+  /// `count`. Every eigenvalue thus grows by noise^2; small eigenvalues are not raised to a minimum instead. The moment
+  /// match of several cells therefore has the covariance of all their points + the same noise^2 I.
   Gaussian<D> gaussian(double side, double noise) const;
 
  private:

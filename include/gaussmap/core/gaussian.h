@@ -18,8 +18,8 @@ class GAUSSMAP_API Random {
   /// Starts the sequence that belongs to `seed`.
   explicit Random(std::uint64_t seed) : state_(seed) {}
 
-  /// Returns the generator of one part of a job. It is independent of the generators of all other parts, so the parts
-  /// can run in any order.
+  /// Returns the generator of one part of a job, for example of one cell. The generators of the parts do not affect
+  /// each other, so the parts can run in any order.
   static Random forPart(std::uint64_t seed, std::uint64_t part) {
     Random mixed(seed ^ (part * 0x9E3779B97F4A7C15ull));
     return Random(mixed.bits() + part);
@@ -36,7 +36,8 @@ class GAUSSMAP_API Random {
   /// Returns a uniform random number in [0, 1).
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }
 
-  /// Returns a uniform random number in {0, ..., n - 1}, for n > 0. The bias of the multiplication is below n / 2^64.
+  /// Returns a uniform random integer from 0 to n - 1, for n from 1 to 2^32. Every probability differs from 1 / n by
+  /// less than 2^-64.
   std::uint64_t below(std::uint64_t n) {
     const std::uint64_t high = bits() >> 32, low = bits() >> 32;
     return ((high * n) + ((low * n) >> 32)) >> 32;
@@ -66,9 +67,9 @@ class GAUSSMAP_API Random {
   bool has_spare_ = false;
 };
 
-/// Eigen's storage option of Vector and Matrix. Even sizes are stored unaligned, because Eigen's alignment depends on
-/// the -m flags of the compiler. A library built without AVX could otherwise not share these types with a program
-/// built with AVX.
+/// Eigen's storage option of Vector and Matrix. Even sizes are stored unaligned. With Eigen's default, their alignment
+/// would depend on the -m flags of the compiler. A library built without AVX and a program built with AVX could then
+/// not exchange these types.
 template <int D>
 inline constexpr int kStorage = D % 2 == 0 ? int(Eigen::DontAlign) : int(Eigen::AutoAlign);
 /// A column vector of D doubles.
@@ -78,7 +79,7 @@ using Vector = Eigen::Matrix<double, D, 1, kStorage<D>>;
 template <int D>
 using Matrix = Eigen::Matrix<double, D, D, kStorage<D>>;
 
-/// A weighted Gaussian: the value that the stages of the library pass on. D = 3 in space, D = 2 in the plane.
+/// A weighted Gaussian, the common data type of all parts of the library. D = 3 in space, D = 2 in the plane.
 template <int D>
 struct GAUSSMAP_API Gaussian {
   Vector<D> mean = Vector<D>::Zero();     ///< mu, D x 1 [m], map frame unless a function says otherwise
@@ -125,10 +126,11 @@ struct GAUSSMAP_API PrincipalAxes {
   /// Returns the direction of smallest variance: the surface normal of a flat cluster. Its sign is arbitrary, but the
   /// same input gives the same sign.
   Vector<D> normal() const { return directions.col(0); }
-  /// Returns `(s1 - s0) / s_max`, with s = standard deviations in ascending order: 1 for an ideal plane (an ideal line
-  /// in 2-D), 0 for a sphere.
+  /// Returns `(s1 - s0) / s_max`, with s = standard deviations in ascending order. In 3-D, the value is 1 for a round
+  /// disc without thickness, and 0 for a line or a sphere. In 2-D, it is 1 for a line and 0 for a circle.
   double flatness() const;
-  /// Returns `(s_max - s_next) / s_max`, with s = standard deviations: 1 for an ideal line, 0 for a disc or a sphere.
+  /// Returns `(s_max - s_next) / s_max`, with the two largest standard deviations s_max and s_next. The value is 1 for
+  /// a line, and 0 for a round disc or a sphere.
   double linearity() const;
 };
 

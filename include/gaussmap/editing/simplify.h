@@ -16,20 +16,22 @@ struct SimplifyOptions {
 
 /// Reduces the number of Gaussians of a map to a budget, Yguel 2009 sec. 5.4.
 ///
-/// Clusters of the same cell are merged where the cost is smallest over the whole scale, until the budget is met. This
-/// includes the finest scale, if its cells hold several Gaussians. No finer scale is needed, so the function also
-/// accepts compressed maps, final maps and maps of one scale. The children of merged clusters become children of the
-/// union. Coarse clusters thus stay the moment matches of their children. Every cell keeps at least one Gaussian, and
-/// exact moments are kept.
+/// The function merges pairs of clusters of the same cell, until the budget is met. It always merges the pair with the
+/// smallest cost of the whole scale. The finest scale is simplified too if its cells hold several Gaussians. The finer
+/// scales of a cell can be missing, so the function also accepts compressed maps, final maps and maps of one scale. The
+/// children of merged clusters become children of the union. Coarse clusters thus stay the moment matches of their
+/// children. Every cell keeps at least one Gaussian. A finest scale with exact moments does not change.
 ///
-/// With MaxError, distances are measured from samples of a scale to samples of the leaves of the given map. The number
-/// of Gaussians is found by bisection to within 0.5 %. A scale whose error is already larger is not changed and is
-/// listed in RefineResult::not_reached. The result has no error curves.
+/// With MaxError, the error of a scale is the 95 % quantile of the distances from samples of the scale to the nearest
+/// samples of the leaves of the given map. Per scale, a bisection finds the smallest number of Gaussians that keeps the
+/// limit, to within 0.5 %. If a scale exceeds the limit before any merge, it does not change and is listed in
+/// RefineResult::not_reached. A scale with one Gaussian per cell is never listed. The result has no error curves.
 ///
 /// Throws std::invalid_argument in these cases:
 /// - The budget is out of range; the message names the option.
-/// - The map does not have a listed scale, or a limit is below the number of cells of its scale.
-/// - MaxBytes: one Gaussian per cell exceeds the limit; the message gives the bytes needed.
+/// - MaxGaussians: the map does not have a listed scale, or a limit is below the number of cells of the scale.
+/// - MaxBytes: a map with one Gaussian per cell exceeds the limit; the message gives the bytes needed.
+/// - MaxBytes or MaxError, and D = 2.
 template <int D>
 GAUSSMAP_API RefineResult<D> simplify(GaussianMap<D> map, const Budget& budget, const SimplifyOptions& options = {});
 

@@ -13,31 +13,32 @@ namespace gaussmap {
 /// Options of transformMap().
 struct TransformOptions {
   std::optional<MapOptions> grid;            ///< grid of the result; std::nullopt: the grid of the map
-  std::optional<PoseCovariance> covariance;  ///< of the motion; std::nullopt: the motion is exact
+  std::optional<PoseCovariance> covariance;  ///< covariance of the motion; std::nullopt: it is exact
   MergeCost merge_cost = MergeCost::Volume;  ///< which pair of clusters of a coarse cell is merged next
   int threads = 0;                           ///< 0 = all cores
 };
 
 /// Transforms a map into another frame, and resamples it if a grid is given. `motion`: p_target = R p + t.
 ///
-/// Finest scale: Every Gaussian is transformed and sorted into the cell that contains its new mean. Gaussians that
-/// share a cell are not merged, so the inverse motion restores all means and weights. The covariance of the motion is
-/// propagated to each mean and added to the covariance of the Gaussian.
+/// Finest scale in cells of the same side: Every Gaussian is transformed and sorted into the cell that contains its new
+/// mean. Gaussians that share a cell are not merged, so the inverse motion restores all means and weights. The
+/// covariance of the motion is propagated to each mean and added to the covariance of the Gaussian.
 ///
-/// Finest scale in cells of another side: The Gaussians of a cell are merged into one. Before, a Gaussian from a larger
-/// cell is halved along its long axis. This repeats while it is longer than a cell and its halves lie in different
-/// cells; its length is that of a uniform rod, sqrt(12) standard deviations. Halving and merging keep the total weight,
-/// mean and covariance.
+/// Finest scale in cells of another side: All Gaussians of a new cell are merged into one. If the new cells are
+/// smaller, long Gaussians are first halved along their longest axis. This repeats while a Gaussian is longer than a
+/// new cell and its halves lie in different cells. Its length is sqrt(12) standard deviations, as for a uniform rod.
+/// Halving and merging keep the total weight, mean and covariance.
 ///
-/// Coarse scales in the same grid: The clusters of scale 1 are cut at the borders of the new cells. agglomerate() then
-/// merges the cheapest pairs within the cells, until the number of clusters is as before, but at least one per cell.
-/// The coarser scales are rebuilt from the scale below, with the number of clusters as before.
+/// Coarse scales in the same grid: At scale 1, the borders of the new cells cut the clusters into parts. agglomerate()
+/// then merges the cheapest pairs of parts within the cells. It stops when the scale has as many clusters as before, or
+/// one per cell. A coarser scale is rebuilt in the same way, but the merging starts from the Gaussians of the scale
+/// below.
 ///
-/// Coarse scales in another grid: refine() rebuilds them with the same number of clusters per cell as before. In both
-/// cases all clusters are exact moment matches.
+/// Coarse scales in another grid: refine() rebuilds them with the same mean number of clusters per cell as before. In
+/// both grids, every coarse cluster is the exact moment match of its children.
 ///
-/// The identity returns the same map. Any other result has no exact moments and accepts no more scans. For D = 2, only
-/// x, y and the rotation about z of the covariance are used.
+/// The identity without a covariance, in the same grid, returns the same map. Any other result has no exact moments and
+/// accepts no more scans. For D = 2, only the entries of x, y and the rotation about z of the covariance are used.
 ///
 /// Throws std::invalid_argument in these cases:
 /// - The pose has a fault (see poseFault()).

@@ -22,7 +22,7 @@ struct DistanceSummary {
   double q95 = 0.0;       ///< 95 % quantile
   double mean = 0.0;      ///< mean
   double rms = 0.0;       ///< root of the mean square
-  std::size_t count = 0;  ///< n
+  std::size_t count = 0;  ///< number n of distances
 };
 
 /// Returns the summary of a set of distances. Throws std::invalid_argument if there are no distances.
@@ -36,11 +36,12 @@ struct HausdorffResult {
   double hausdorff() const { return forward.max > backward.max ? forward.max : backward.max; }
 };
 
-/// The single distances behind a result.
+/// The distance of every single point, before they are summarised. In hausdorff(), a is the subject and b is the
+/// reference.
 struct PointDistances {
-  std::vector<Vector<3>> subject;  ///< n points [m]: the compared cloud, or the samples of the compared map
-  std::vector<double> forward;     ///< n [m], from each point of the subject to the reference
-  std::vector<double> backward;    ///< [m], from each point of the reference, in its order, to the subject
+  std::vector<Vector<3>> subject;  ///< points of the compared cloud, or samples of the compared map [m]
+  std::vector<double> forward;     ///< per point of the subject: distance to the reference [m]
+  std::vector<double> backward;    ///< per point of the reference, in its order: distance to the subject [m]
 };
 
 /// Computes the distances between two sets of points [m] in the same frame.
@@ -59,19 +60,20 @@ struct HausdorffMaxima {
 };
 /// Computes only the maxima of hausdorff(), with bit-identical results in less time.
 ///
-/// Most points need no search: they, or whole boxes of them, are known to have a neighbour nearer than the largest
-/// distance so far. Nearly all the time is spent on sorting. `threads`: 0 = all cores. Throws like hausdorff().
+/// Only a point whose distance can exceed the largest distance so far needs a search. Most points, and even whole boxes
+/// of points, are excluded without one. Nearly all the time is spent on sorting the points. `threads`: 0 = all cores.
+/// Throws like hausdorff().
 GAUSSMAP_API HausdorffMaxima hausdorffMaxima(const std::vector<Vector<3>>& a, const std::vector<Vector<3>>& b,
                                              int threads = 0);
 
 /// The distances between a map and a reference. Forward is from the map's samples to the reference (surfaces that only
 /// the map has); backward is from the reference to the samples (surfaces that the map misses).
 struct MapHausdorff {
-  HausdorffResult all;               ///< all samples inside their bounds (see SampleBounds)
-  HausdorffResult within_two_sigma;  ///< only samples within 2 sigma of their means; count = 0 if there are none
-  std::size_t gaussians = 0;         ///< number of Gaussians of the scale, or of the leaves
-  std::size_t samples = 0;           ///< number of samples; within_two_sigma.forward.count of them are within 2 sigma
-  std::size_t unplaced = 0;          ///< number of samples missing, see sampleMap()
+  HausdorffResult all;               ///< result for all samples
+  HausdorffResult within_two_sigma;  ///< result for the samples within 2 sigma of their means; count = 0: none
+  std::size_t gaussians = 0;         ///< number of compared Gaussians: those of the scale, or the leaves
+  std::size_t samples = 0;           ///< number of samples of the map
+  std::size_t unplaced = 0;  ///< number of samples for which no place inside the bounds was found, see sampleMap()
 };
 
 /// A reference for comparisons with maps and clouds. It is sorted once and serves any number of comparisons. It is a
@@ -86,8 +88,8 @@ class GAUSSMAP_API Reference {
   /// Forward distances are exact distances from the surface. Backward distances start from `samples` points on the
   /// surface (see sampleSurface()). Throws std::invalid_argument if the mesh has a fault or no area, or `samples` is 0.
   Reference(const TriangleMesh& mesh, std::size_t samples, std::uint64_t seed = 1);
-  /// Makes a reference of the samples of another map. MapHausdorff::within_two_sigma then uses only samples within 2
-  /// sigma on both sides. Throws std::invalid_argument if there are no samples.
+  /// Makes a reference of the samples of another map. MapHausdorff::within_two_sigma then compares only the samples
+  /// within 2 sigma of their means, in both maps. Throws std::invalid_argument if there are no samples.
   explicit Reference(const MapSamples<3>& samples);
 
   /// Returns the points from which the backward distances start [m].
@@ -100,14 +102,14 @@ class GAUSSMAP_API Reference {
 
   /// Compares samples of one scale of a map with the reference, Yguel 2009 sec. 6.
   ///
-  /// The maximum of `all.forward` grows with the number of samples, as in the paper, because a Gaussian ends only at
-  /// its bounds. Compare maps with equal options, or by q99, or by `within_two_sigma`, whose samples fill an ellipsoid.
-  /// If `distances` is given, it receives the single distances. Throws std::invalid_argument if the scale is empty, and
-  /// std::out_of_range if the map does not have the scale.
+  /// The maximum of `all.forward` grows with the number of samples, as in the paper: more samples reach farther into
+  /// the tails of the Gaussians. Therefore compare maps with equal options, or by q99, or by `within_two_sigma`, which
+  /// leaves out the tails. If `distances` is given, it receives the single distances. Throws std::invalid_argument if
+  /// the scale is empty, and std::out_of_range if the map does not have the scale.
   MapHausdorff compare(const GaussianMap<3>& map, int scale, const SampleOptions& options = {},
                        PointDistances* distances = nullptr) const;
-  /// Compares samples of the leaves of a map with the reference: a compressed map as a whole. It works like compare()
-  /// for one scale.
+  /// Compares samples of the leaves of a map with the reference. Use it for a compressed map as a whole. It works like
+  /// compare() for one scale, with the samples of sampleLeaves().
   MapHausdorff compareLeaves(const GaussianMap<3>& map, const SampleOptions& options = {},
                              PointDistances* distances = nullptr) const;
 

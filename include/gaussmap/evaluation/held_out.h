@@ -9,33 +9,36 @@
 
 namespace gaussmap {
 
-/// Returns logLikelihood() of many points, n values in their order [ln(1/m^D)].
+/// Returns logLikelihood() of many points: one value per point, in their order. The values are natural logarithms of
+/// densities in 1/m^D.
 ///
-/// Every Gaussian is factorised once, and the adjacent cells are looked up once for all points of a cell. The value is
-/// minus infinity if a point's cell and all adjacent cells are empty. `threads`: 0 = all cores.
-/// Throws std::out_of_range if the map does not have the scale, or if a point is not finite or out of the grid's range.
-/// Throws std::domain_error if a covariance is not positive definite.
+/// This is faster than one call of logLikelihood() per point: every Gaussian is factorised once, and the cells near a
+/// cell are looked up once for all its points. The value is minus infinity if a point's cell and all adjacent cells are
+/// empty. `threads`: 0 = all cores. Throws std::out_of_range if the map does not have the scale, or if a point is not
+/// finite or out of the grid's range. Throws std::domain_error if a covariance is not positive definite.
 template <int D>
 GAUSSMAP_API std::vector<double> logLikelihoods(const GaussianMap<D>& map, int scale,
                                                 const std::vector<Vector<D>>& points, int threads = 0);
-/// Returns logLikelihood() of many points from the leaves of the map, n values in their order [ln(1/m^D)].
+/// Returns logLikelihood() of many points from the leaves of the map: one value per point, in their order.
 ///
-/// At every scale, the leaf cells among a point's cell and the adjacent cells contribute. The weights are divided by
-/// the weight of the whole map. `threads`: 0 = all cores. Throws like logLikelihoods() of one scale.
+/// The function looks at the cell of a point and the adjacent cells, at every scale. The Gaussians of those cells that
+/// are leaf cells contribute. The weights are divided by the weight of the whole map. `threads`: 0 = all cores. Throws
+/// like logLikelihoods() of one scale.
 template <int D>
 GAUSSMAP_API std::vector<double> logLikelihoods(const GaussianMap<D>& map, const std::vector<Vector<D>>& points,
                                                 int threads = 0);
 
 /// Options of heldOutLogLikelihood().
 struct HeldOutOptions {
-  double background = 0.01;  ///< epsilon, share of the points that can be anywhere, in (0, 1)
-  double volume = 0.0;       ///< V, volume for these points [m^D]; 0: box around all points, each side at least 1 m
+  double background = 0.01;  ///< epsilon, weight of the uniform density 1 / V, in (0, 1)
+  double volume = 0.0;       ///< V, volume of this density [m^D]; 0: box around all points, each side at least 1 m
   int threads = 0;           ///< 0 = all cores
 };
 
 /// How well a map predicts points.
 ///
-/// The map's density p is mixed with a uniform density. A point outside the map is then expensive, but not infinitely.
+/// The map's density p is mixed with a uniform density 1 / V. A point where p = 0 then has a low score, but not minus
+/// infinity.
 /// Each point scores ln((1 - epsilon) p(x) + epsilon / V) [nat, p in 1/m^D]. A larger score is better. Compare maps
 /// only with the same points and options, so that V is the same.
 struct HeldOutResult {

@@ -13,8 +13,8 @@
 
 namespace gaussmap {
 
-/// Maximum log-odds of occupancy, the paper's o_max. All clusters have this value in a map without occupancy, because
-/// no beam was observed to pass through them.
+/// Maximum log-odds of occupancy, the paper's o_max. In a map without occupancy, all clusters have this value, because
+/// it is not known that any beam passed through them.
 inline constexpr float kMaxOccupancy = 10.0f;
 
 /// A range of indices: first, first + 1, ..., last - 1.
@@ -31,13 +31,18 @@ struct IndexRange {
 /// scale, and so on, each by x, then y, then z. The children of a cell are therefore consecutive.
 template <int D>
 struct MapScale {
-  std::vector<CellKey<D>> keys;               ///< n cells
-  std::vector<std::uint32_t> first_child;     ///< n + 1 indices of cells of the finer scale; empty at scale 0
-  std::vector<CellMoments<D>> moments;        ///< n, or empty; only at scale 0, where the Gaussians follow from them
-  std::vector<std::uint32_t> first_gaussian;  ///< n + 1, or empty: cell i holds only Gaussian i
-  std::vector<Gaussian<D>> gaussians;         ///< means relative to the cell's centre; empty if there are moments
-  std::vector<std::uint32_t> parent;          ///< per Gaussian: its cluster of the coarser scale; empty at the coarsest
-  std::vector<float> log_odds;                ///< per Gaussian: occupancy; empty if the map has no occupancy
+  std::vector<CellKey<D>> keys;  ///< n cells
+  /// n + 1 indices: cell i has the children first_child[i] to first_child[i + 1] - 1 of the finer scale. Empty at scale
+  /// 0.
+  std::vector<std::uint32_t> first_child;
+  /// n exact moments, or empty. Only scale 0 can have moments. Its Gaussians are then computed from them.
+  std::vector<CellMoments<D>> moments;
+  /// n + 1 indices: cell i holds the Gaussians first_gaussian[i] to first_gaussian[i + 1] - 1. If it is empty, cell i
+  /// holds only Gaussian i.
+  std::vector<std::uint32_t> first_gaussian;
+  std::vector<Gaussian<D>> gaussians;  ///< means relative to the cell's centre; empty if there are moments
+  std::vector<std::uint32_t> parent;   ///< per Gaussian: its cluster of the coarser scale; empty at the coarsest
+  std::vector<float> log_odds;         ///< per Gaussian: occupancy; empty if the map has no occupancy
 
   /// Returns the number of Gaussians.
   std::size_t gaussianCount() const { return gaussians.empty() ? moments.size() : gaussians.size(); }
@@ -78,7 +83,7 @@ class GAUSSMAP_API GaussianMap {
   /// Returns true if a coarse cell has no cells below it. The finer scales then do not cover the whole map.
   bool isCompressed() const { return compressed_; }
   /// Returns true if the map can take more points: it is empty, or its finest scale holds the exact moments of all
-  /// points. Such maps also merge exactly.
+  /// points. mergeMaps() merges two such maps without loss.
   bool acceptsScans() const { return empty() || (!isCompressed() && !scales_.front().moments.empty()); }
 
   /// Returns the number of cells of scale `s`.
@@ -89,8 +94,9 @@ class GAUSSMAP_API GaussianMap {
   /// map only the coarsest scale represents all points. In any other map all scales have the same sum.
   double weight(int s) const { return weights_[static_cast<std::size_t>(s)]; }
 
-  /// Returns the index of a cell of scale `s`, or std::nullopt if the cell is not occupied. The cost is logarithmic in
-  /// the number of children per cell.
+  /// Returns the index of a cell of scale `s`, or std::nullopt if the cell is not occupied. The search goes from the
+  /// coarsest scale down to scale `s`. Per scale it is a binary search, first in all coarsest cells, then in the
+  /// children of one cell.
   std::optional<std::size_t> find(const CellKey<D>& key, int s) const;
   /// Returns the Gaussians of cell `cell` of scale `s`.
   IndexRange gaussiansOf(std::size_t cell, int s) const;
@@ -113,8 +119,8 @@ class GAUSSMAP_API GaussianMap {
   /// Returns true if the Gaussians have occupancy values from range images, as in a map of OnlineMapper. Either all
   /// scales have them or none.
   bool hasOccupancy() const { return !scale(scales() - 1).log_odds.empty(); }
-  /// Returns the log-odds that something is still at Gaussian `index` of scale `s`, or kMaxOccupancy if the map has no
-  /// occupancy.
+  /// Returns the log-odds of occupancy of Gaussian `index` of scale `s`: whether the surface is still there. Returns
+  /// kMaxOccupancy if the map has no occupancy.
   float logOdds(std::size_t index, int s) const { return hasOccupancy() ? scale(s).log_odds[index] : kMaxOccupancy; }
 
   /// Returns the parent of Gaussian `index` of scale `s`: a cluster of scale `s` + 1 (paper, Fig. 6). `s` must be below
@@ -136,7 +142,7 @@ using GaussianMapOctree = GaussianMap<3>;
 using GaussianMapQuadtree = GaussianMap<2>;
 
 /// Returns the permutation that puts the cells of one scale into key order (see MapScale). `levels` is the number of
-/// coarser scales.
+/// scales of the map that are coarser than this one.
 template <int D>
 GAUSSMAP_API std::vector<std::uint32_t> keyOrder(const std::vector<CellKey<D>>& keys, int ratio, int levels);
 

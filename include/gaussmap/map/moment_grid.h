@@ -16,8 +16,8 @@ namespace gaussmap {
 
 /// Sorts points into the cells of the finest scale and holds the exact moments of every cell.
 ///
-/// The hash table uses open addressing with 8-byte slots. The cells lie in fixed chunks, so a cell never moves and no
-/// memory is allocated per cell. A moved-from grid can only be destroyed or assigned to.
+/// The hash table uses open addressing with 8-byte slots. The cells lie in chunks of fixed size, so a cell never moves
+/// in memory and has no allocation of its own. A moved-from grid can only be destroyed or assigned to.
 template <int D>
 class GAUSSMAP_API MomentGrid {
  public:
@@ -42,18 +42,19 @@ class GAUSSMAP_API MomentGrid {
   const Cell& operator[](std::size_t index) const { return chunks_[index / kChunk][index % kChunk]; }
   /// Returns the moments of a cell, or nullptr if the cell has no point.
   const CellMoments<D>* find(const CellKey<D>& key) const;
-  /// Returns the number of points counted so far.
+  /// Returns the number of points added so far.
   std::int64_t pointCount() const { return point_count_; }
 
-  /// Counts the finite points of a block [m, map frame] and returns their number.
+  /// Adds the finite points of a block [m, map frame] to their cells and returns the number of these points.
   ///
   /// Throws std::out_of_range if a point lies beyond the range of 32-bit cell indices; the message gives the point.
-  /// Throws std::length_error if a cell would hold more points than CellMoments::kMaxPoints. In both cases the block is
-  /// not counted.
+  /// Throws std::length_error if a cell would hold more points than CellMoments::kMaxPoints. In both cases no point of
+  /// the block is added.
   std::size_t add(const PointBlock<D>& block);
 
-  /// Counts `count` points [m, map frame] and returns the number of finite points. `point(i)` returns point i as
-  /// anything that can be indexed by axis ([0], [1], ...). Throws like add() for a block.
+  /// Adds the finite points among `count` points [m, map frame] to their cells and returns their number. `point(i)`
+  /// returns point i as anything that can be indexed by axis ([0], [1], ...). The points are added in blocks. Throws
+  /// like add() for a block; the blocks before it remain added.
   template <typename PointAt>
   std::size_t addPoints(std::size_t count, PointAt&& point) {
     PointBlock<D> block;
@@ -68,7 +69,8 @@ class GAUSSMAP_API MomentGrid {
     }
     return added;
   }
-  /// Counts the finite points of a list [m, map frame] and returns their number. Throws like add() for a block.
+  /// Adds the finite points of a list [m, map frame] to their cells and returns their number. Throws like the other
+  /// addPoints().
   std::size_t addPoints(const std::vector<Vector<D>>& points) {
     return addPoints(points.size(), [&](std::size_t i) -> const Vector<D>& { return points[i]; });
   }
@@ -87,24 +89,25 @@ class GAUSSMAP_API MomentGrid {
 
  private:
   struct Slot {
-    std::uint32_t hash;   // of the key; most comparisons need only the hash and do not read the cell
-    std::uint32_t index;  // of the cell, or kEmpty
+    std::uint32_t hash;   // hash of the key; most comparisons need only this and do not read the cell
+    std::uint32_t index;  // index of the cell, or kEmpty
   };
   struct Free {
     void operator()(void* memory) const { std::free(memory); }
   };
-  static constexpr std::size_t kChunk = 65536;  // cells; a chunk is whole huge pages, untouched pages take no memory
+  static constexpr std::size_t kChunk = 65536;  // cells per chunk; a chunk fills whole huge pages
   static constexpr std::uint32_t kEmpty = 0xFFFFFFFFu;
 
   Cell& cell(std::uint32_t index) { return chunks_[index / kChunk][index % kChunk]; }
-  /// Returns the first cell with this hash, most likely the cell that the caller looks for, or kEmpty.
+  /// Returns the index of the first cell with this hash, or kEmpty. Another key can have the same hash, so the caller
+  /// compares the key.
   std::uint32_t candidate(std::uint32_t hash) const;
   static void prefetch(const Cell& cell);
   std::uint32_t indexOf(const CellKey<D>& key, std::uint32_t hash) const;  // kEmpty if the grid has no such cell
   Cell& findOrInsert(const CellKey<D>& key, std::uint32_t hash);
   /// Allocates chunks and slots for `cells` cells in total.
   void reserve(std::size_t cells);
-  /// Appends the cell that the caller has constructed behind the last cell, and enters it into the hash table.
+  /// Enters a new cell into the hash table. The caller has constructed the cell directly after the last cell.
   void enter(std::uint32_t hash);
   /// Enlarges the hash table to `slot_count` slots.
   void widen(std::size_t slot_count);

@@ -23,11 +23,11 @@ struct GaussianId {
 template <int D>
 GAUSSMAP_API std::vector<GaussianId> gaussiansOfScale(const GaussianMap<D>& map, int scale);
 
-/// Returns the Gaussians of all leaf cells: the finest scale, and the coarse cells below which compress() deleted the
-/// detail.
+/// Returns the Gaussians of all leaf cells. A leaf cell has no finer cells below it (see GaussianMap::isLeaf()).
 ///
-/// Together they represent every point once. The finest scale is first, and each scale keeps its order. In a map that
-/// is not compressed, the leaves are the finest scale.
+/// Together the leaves represent every point once. They are ordered by scale, finest first, and then by index. In a
+/// compressed map, the leaves are cells of several scales. In any other map, the leaves are the cells of the finest
+/// scale.
 template <int D>
 GAUSSMAP_API std::vector<GaussianId> leaves(const GaussianMap<D>& map);
 
@@ -55,16 +55,16 @@ template <int D>
 GAUSSMAP_API double logLikelihood(const GaussianMap<D>& map, const Vector<D>& point, int scale);
 /// Returns the logarithm of the density of the map's leaves at a point, with the density in 1/m^D.
 ///
-/// The mixture uses, at every scale, the leaf cells among the point's cell and the adjacent cells. The weights are
-/// divided by the weight of the whole map. Throws std::out_of_range if the point is not finite or out of the grid's
-/// range.
+/// The density is the mixture of the Gaussians in leaf cells. At every scale, these are the leaf cells among the
+/// point's cell and the adjacent cells. The weights are divided by the weight of the whole map. The result is minus
+/// infinity if there are no such cells. Throws std::out_of_range if the point is not finite or out of the grid's range.
 template <int D>
 GAUSSMAP_API double logLikelihood(const GaussianMap<D>& map, const Vector<D>& point);
 
 /// The result of nearest(): a Gaussian and its distance.
 template <int D>
 struct NearestGaussian {
-  std::size_t index;  ///< Gaussian of the given scale
+  std::size_t index;  ///< index of the Gaussian in the given scale
   double distance;    ///< distance of the Gaussian's mean from the point [m]
 };
 
@@ -78,18 +78,19 @@ GAUSSMAP_API std::optional<NearestGaussian<D>> nearest(const GaussianMap<D>& map
 
 /// Returns the unit normal of the surface at a point, or std::nullopt if no scale has a suitable Gaussian there.
 ///
-/// In the point's cell of each scale, finest first, the function takes the cluster nearest to the point under eq. (2)
-/// of Yguel 2009. The cluster must span a surface: it has at least D + 1 points, and its standard deviation is at least
-/// 4 noise floors along every axis except the normal. The sign of the normal is arbitrary. Throws std::out_of_range if
-/// the point is not finite or out of the grid's range.
+/// The function looks at the point's cell of one scale after the other, finest first. In the cell it takes the cluster
+/// nearest to the point, with the distance of Yguel 2009 eq. (2). This cluster gives the normal if it spans a surface.
+/// It then has at least D + 1 points, and its standard deviation along every axis except the normal is at least 4
+/// MapOptions::noise. The sign of the normal is arbitrary. Throws std::out_of_range if the point is not finite or out
+/// of the grid's range.
 template <int D>
 GAUSSMAP_API std::optional<Vector<D>> normalAt(const GaussianMap<D>& map, const Vector<D>& point);
 
 /// Returns the log-odds that something is at a point [m, map frame].
 ///
-/// The value is that of the Gaussian nearest to the point (Mahalanobis distance) in the leaf cell that contains the
-/// point. Returns std::nullopt if no leaf cell contains the point, or if the point is not finite or out of the grid's
-/// range.
+/// The leaf cell that contains the point can hold several Gaussians. The value is that of the Gaussian with the
+/// smallest Mahalanobis distance from the point. Returns std::nullopt if no leaf cell contains the point, or if the
+/// point is not finite or out of the grid's range.
 template <int D>
 GAUSSMAP_API std::optional<float> logOddsAt(const GaussianMap<D>& map, const Vector<D>& point);
 

@@ -13,16 +13,17 @@ namespace gaussmap {
 
 /// Decides how many samples each Gaussian gets.
 enum class SampleShare {
-  /// Proportional to the volume of the ellipsoid, sqrt(det Sigma). All space that the map covers is tested equally,
-  /// also where there were few points.
+  /// Proportional to the volume of the Gaussian's ellipsoid, sqrt(det Sigma). All space that the map covers gets about
+  /// equally dense samples, also where there were few points.
   Volume,
-  /// Proportional to the weight. The samples are as dense as the points were.
+  /// Proportional to the weight of the Gaussian. The samples are as dense as the points were.
   Mass
 };
 
 /// Where the samples of a Gaussian may lie. Samples outside are rejected.
 enum class SampleBounds {
-  /// In the box around the finest cells that the Gaussian represents. The tails then do not extend beyond the object.
+  /// In the box around the finest cells that the Gaussian represents. The samples then extend at most one finest cell
+  /// beyond the points of the Gaussian, although its tails are longer.
   MemberCells,
   /// In the cell of the Gaussian, as in the paper.
   Cell
@@ -38,13 +39,14 @@ struct SampleOptions {
   SampleBounds bounds = SampleBounds::MemberCells;  ///< where samples may lie
 };
 
-/// Samples of a map, ordered by cell, then by Gaussian.
+/// Samples of a map, in the order of their Gaussians. Each array has one entry per sample.
 template <int D>
 struct GAUSSMAP_API MapSamples {
-  std::vector<Vector<D>> points;        ///< n [m], map frame, each inside the bounds of its Gaussian
-  std::vector<std::uint32_t> gaussian;  ///< n, index of the sample's Gaussian in the scale (or in leaves())
-  std::vector<double> mahalanobis;      ///< n, Mahalanobis distance from the mean of the sample's Gaussian
-  std::size_t unplaced = 0;             ///< number of samples that no try placed inside the bounds, see sampleMap()
+  std::vector<Vector<D>> points;  ///< [m], map frame, each inside the bounds of its Gaussian
+  /// The Gaussian of each sample. sampleMap(): its index in the scale; sampleLeaves(): its index in leaves().
+  std::vector<std::uint32_t> gaussian;
+  std::vector<double> mahalanobis;  ///< Mahalanobis distance of each sample from the mean of its Gaussian
+  std::size_t unplaced = 0;         ///< number of missing samples, see sampleMap()
 
   /// Returns the points at a Mahalanobis distance of at most `sigmas`.
   std::vector<Vector<D>> within(double sigmas) const;
@@ -60,19 +62,20 @@ GAUSSMAP_API std::vector<std::size_t> sampleCounts(const GaussianMap<D>& map, in
 
 /// Draws samples from the Gaussians of one scale, Yguel 2009 sec. 6.
 ///
-/// Samples outside the bounds of their Gaussian are rejected (in the paper: outside its cell). At the finest scale both
-/// kinds of bounds are the cells. For n samples of a Gaussian there are at most 1000 + 200 n tries, because a Gaussian
-/// can have almost no mass inside its bounds. `unplaced` counts the samples that are then missing.
+/// Samples outside the bounds of their Gaussian are rejected (see SampleBounds; the paper uses SampleBounds::Cell). At
+/// the finest scale, both kinds of bounds are the cell of the Gaussian. A Gaussian can have almost no mass inside its
+/// bounds. Therefore there are at most 1000 + 200 k tries for k samples of a Gaussian. MapSamples::unplaced counts the
+/// samples that are then missing.
 ///
 /// The samples of a Gaussian depend on the Gaussian, the seed, the key of its cell, its rank in the cell and their
 /// number. They do not depend on other cells of the map. Throws like sampleCounts().
 template <int D>
 GAUSSMAP_API MapSamples<D> sampleMap(const GaussianMap<D>& map, int scale, const SampleOptions& options = {});
 
-/// Draws samples from the leaves of a map (see leaves()), of all scales together.
+/// Draws samples from the Gaussians of leaves(). The leaves of all scales share SampleOptions::samples.
 ///
-/// The samples of a Gaussian lie in its cell; SampleOptions::bounds is not used. Throws std::domain_error if a
-/// covariance is not positive definite.
+/// The samples of a Gaussian lie in its cell; SampleOptions::bounds is not used. The number of tries is limited as in
+/// sampleMap(). Throws std::domain_error if a covariance is not positive definite.
 template <int D>
 GAUSSMAP_API MapSamples<D> sampleLeaves(const GaussianMap<D>& map, const SampleOptions& options = {});
 

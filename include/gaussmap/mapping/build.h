@@ -23,10 +23,10 @@ struct GAUSSMAP_API AccumulateOptions {
 
 /// The state of accumulateScans() after a scan.
 struct AccumulateProgress {
-  std::size_t scans_done = 0;  ///< scans read so far
-  std::size_t scans = 0;       ///< all scans
-  std::int64_t points = 0;     ///< points read so far
-  std::size_t cells = 0;       ///< occupied cells of the reporting thread: a lower bound of all occupied cells
+  std::size_t scans_done = 0;  ///< number of scans read so far
+  std::size_t scans = 0;       ///< number of all scans
+  std::int64_t points = 0;     ///< number of points read so far
+  std::size_t cells = 0;       ///< lower bound of the number of occupied cells: those of a single thread
 };
 /// A function that receives the progress.
 using ReportProgress = std::function<void(const AccumulateProgress&)>;
@@ -34,7 +34,7 @@ using ReportProgress = std::function<void(const AccumulateProgress&)>;
 /// The result of accumulateScans().
 struct AccumulatedScans {
   MomentGrid<3> moments;  ///< exact moments per cell, map frame
-  PointCounts counts;     ///< accepted and dropped points
+  PointCounts counts;     ///< numbers of accepted and dropped points
 };
 
 /// Reads scans and sorts their points into cells. The memory grows with the map, not with the number of scans.
@@ -48,16 +48,18 @@ GAUSSMAP_API AccumulatedScans accumulateScans(const Scans& scans, const Accumula
 
 /// Reads scans and sorts their points into cells, within limited memory.
 ///
-/// All threads together keep at most about `max_bytes` of sums. A thread that exceeds its share passes its sums to
-/// `take` and starts again with an empty grid; at the end all threads pass their remaining sums. The calls of `take` do
-/// not overlap and have no fixed order. Each point is in exactly one of the grids. Throws like accumulateScans().
+/// Each thread sorts points into its own grid. All grids together use at most about `max_bytes`. If the grid of a
+/// thread exceeds its share of this, the thread passes the grid to `take` and continues with an empty grid. At the end,
+/// the remaining grids are passed to `take`. The calls of `take` do not overlap and have no fixed order. Each accepted
+/// point is in exactly one of the grids. Throws like accumulateScans().
 GAUSSMAP_API PointCounts accumulateScansInParts(const Scans& scans, const AccumulateOptions& options,
                                                 std::size_t max_bytes,
                                                 const std::function<void(const MomentGrid<3>&)>& take,
                                                 const ReportProgress& progress = {});
 
 /// Returns the accepted points of all scans, in their order [m, map frame]. A map can be compared with these points.
-/// AccumulateOptions::resolution is not used. Throws FileError, and std::invalid_argument for max_range.
+/// AccumulateOptions::resolution and AccumulateOptions::threads are not used. Throws FileError if a file is damaged,
+/// and std::invalid_argument if AccumulateOptions::max_range is negative or NaN.
 GAUSSMAP_API std::vector<Vector<3>> readPoints(const Scans& scans, const AccumulateOptions& options);
 
 /// Builds the map from moments per cell, with one Gaussian per cell at every scale.
@@ -69,14 +71,17 @@ template <int D>
 GAUSSMAP_API GaussianMap<D> build(const MomentGrid<D>& grid, const MapOptions& options);
 
 /// Builds the map from points [m, map frame], with one Gaussian per cell at every scale. Non-finite points are ignored.
-/// Throws std::out_of_range if a point lies beyond the range of 32-bit cell indices; the message gives the point.
+/// Throws std::invalid_argument if the options are not usable, and std::out_of_range if a point lies beyond the range
+/// of 32-bit cell indices; the message gives the point.
 template <int D>
 GAUSSMAP_API GaussianMap<D> build(const std::vector<Vector<D>>& points, const MapOptions& options);
 
-/// Builds the map from a finest scale that is given as Gaussians (an imported map), with one Gaussian per cell.
+/// Builds the map from the Gaussians of its finest scale, for example of an imported map. The map gets one Gaussian per
+/// cell at every scale.
 ///
-/// The function uses only the keys and Gaussians of `finest`, in any order of the cells. It sets the key order, the
-/// coarser scales and the links. Throws std::invalid_argument if `finest` is not a valid scale; the message gives the
+/// The function uses only MapScale::keys and MapScale::gaussians of `finest`. There must be one Gaussian per key; the
+/// cells can have any order. The function sorts the cells into key order, builds the coarser scales, and links the
+/// Gaussians to their parents. Throws std::invalid_argument if `finest` is not a valid scale; the message gives the
 /// reason.
 template <int D>
 GAUSSMAP_API GaussianMap<D> build(const MapScale<D>& finest, const MapOptions& options);

@@ -18,7 +18,8 @@ namespace gaussmap {
 
 /// The error of a scale that has a certain number of Gaussians.
 ///
-/// The error is the distance of samples of this scale from samples of the finest scale [m]. The samples of the finest
+/// Both this scale and the finest scale are sampled (simplify(): the leaves instead of the finest scale). The error is
+/// the distance from each sample of this scale to the nearest sample of the finest scale [m]. The samples of the finest
 /// scale are as dense as the points were. Errors below about half the side of a finest cell are therefore not
 /// meaningful.
 struct ErrorPoint {
@@ -28,7 +29,7 @@ struct ErrorPoint {
   double mean = 0.0;          ///< mean distance [m]
 };
 
-/// The errors that other budgets would give at one scale.
+/// The errors of one scale with different numbers of Gaussians.
 struct ErrorCurve {
   int scale = 1;                   ///< the scale
   std::vector<ErrorPoint> points;  ///< by increasing number of Gaussians; the first point is one Gaussian per cell
@@ -36,53 +37,56 @@ struct ErrorCurve {
 
 /// The samples from which errors are measured.
 struct ErrorSampling {
-  std::size_t samples = 20000;  ///< samples of the measured scale, distributed by volume, >= 1
-  std::size_t data = 200000;    ///< samples of the finest scale, distributed by weight, >= 1
-  std::uint64_t seed = 1;       ///< of both
+  std::size_t samples = 20000;  ///< number of samples of the measured scale, see SampleShare::Volume, >= 1
+  std::size_t data = 200000;    ///< number of samples of the finest scale, see SampleShare::Mass, >= 1
+  std::uint64_t seed = 1;       ///< seed of both kinds of samples
 };
 
 /// Selects the points of the error curves.
 struct CurveOptions {
   std::vector<double> multiples = {1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0};  ///< Gaussians per cell, increasing, each >= 1
-  ErrorSampling sampling;  ///< replaced by the sampling of the budget if that is MaxError
+  ErrorSampling sampling;  ///< not used with the budget MaxError, which has its own
 };
 
 /// A scale that cannot reach the error of MaxError.
 struct NotReached {
-  int scale = 1;     ///< the scale
-  double q95 = 0.0;  ///< refine(): smallest error that the finer scale allows; simplify(): error of the scale [m]
+  int scale = 1;  ///< the scale
+  /// ErrorPoint::q95 of the scale [m]. refine(): with one cluster per finer Gaussian, which is the maximum. simplify():
+  /// before any merge.
+  double q95 = 0.0;
 };
 
 /// The result of refine() and simplify().
 template <int D>
 struct RefineResult {
   GaussianMap<D> map;                   ///< the new map
-  std::vector<ErrorCurve> curves;       ///< of scales 1, 2, ...; empty unless RefineOptions::curves is set
-  std::vector<NotReached> not_reached;  ///< MaxError only
+  std::vector<ErrorCurve> curves;       ///< one per scale 1, 2, ...; empty unless RefineOptions::curves is set
+  std::vector<NotReached> not_reached;  ///< scales that cannot reach the error; empty unless the budget is MaxError
 };
 
 /// A budget: the maximum number of Gaussians per scale, as a multiple of its occupied cells.
 struct PerCell {
-  double gaussians = 3.0;  ///< >= 1; 1: one per cell
+  double gaussians = 3.0;  ///< maximum mean number of Gaussians per occupied cell, >= 1
 };
 
 /// A budget: the maximum number of Gaussians per scale. For scales that are not listed, refine() uses `PerCell{}`;
 /// simplify() does not change them.
 struct MaxGaussians {
-  std::map<int, std::size_t> by_scale;  ///< per scale; at least the number of cells of the scale
+  std::map<int, std::size_t> by_scale;  ///< maximum by scale; each at least the number of occupied cells of its scale
 };
 
-/// A budget: the largest multiple of the occupied cells for which the map does not exceed a number of bytes. The
-/// multiple is found to within 2 %. D = 3 only.
+/// A budget: the maximum size of the map in bytes. As with PerCell, the number of Gaussians per scale is a multiple of
+/// its occupied cells. The multiple is the largest one that keeps the limit, to within 2 %. D = 3 only.
 struct MaxBytes {
   std::uintmax_t bytes = 0;  ///< maximum size of the result
-  /// Measures a result, for example maxFileBytes() the size of its map file. Required. While refine() searches the
-  /// multiple, it passes placeholder curves whose text is at least as long as that of the final curves.
+  /// A function that returns the size of a result [bytes]. It must be set; for example, maxFileBytes() returns the size
+  /// of the map file. While refine() searches for the multiple, RefineResult::curves holds placeholders, because
+  /// measuring takes long. Their text is at least as long as that of the final curves.
   std::function<std::uintmax_t(const RefineResult<3>&)> size_of;
 };
 
-/// A budget: the smallest number of Gaussians per scale for which ErrorPoint::q95 does not exceed a distance. D = 3
-/// only.
+/// A budget: the maximum error. Each scale gets the smallest number of Gaussians for which ErrorPoint::q95 does not
+/// exceed a distance, to within 0.5 % of this number. D = 3 only.
 struct MaxError {
   double metres = 0.0;     ///< maximum of ErrorPoint::q95 [m], > 0
   ErrorSampling sampling;  ///< the samples from which the error is measured
@@ -107,33 +111,35 @@ struct GAUSSMAP_API RefineOptions {
   MergeCost merge_cost = MergeCost::Volume;  ///< which pair is merged next
   std::optional<CurveOptions> curves;        ///< measures the error of other budgets; D = 3 only
   // Insert only:
-  int queue = 0;       ///< p, number of cells refined at a time, >= 1; 0: cells / 250, at least 4
-  int max_swaps = 20;  ///< maximum rounds of the swap loop per inserted cluster, >= 0
-  ClusterSeed seed_rule = ClusterSeed::ParentCovariance;  ///< centre of a new cluster
+  int queue = 0;       ///< p, number of cells refined at a time, >= 1; 0: 1/250 of the scale's cells, at least 4
+  int max_swaps = 20;  ///< maximum number of rounds of the swap loop per inserted cluster (see insertCluster()), >= 0
+  ClusterSeed seed_rule = ClusterSeed::ParentCovariance;  ///< how a new cluster starts
   std::uint64_t seed = 0;                                 ///< same map + same seed = bit-identical result
   // Both:
   int threads = 0;  ///< 0 = all cores
 
   /// Returns the options of the paper, Yguel 2009.
   ///
-  /// Clusters are inserted (sec. 5.2), in the p = 4 cells of largest error, eq. (6), at a time. Each new cluster starts
-  /// as a copy of the Gaussian of largest distortion, with its own covariance (Algorithm 2, lines 5, 18 and 21).
-  /// The default options differ because they give better maps: agglomeration instead of insertion. For insertion, the
-  /// defaults refine more cells at a time, which keeps all threads busy. A new cluster then starts with the covariance
-  /// of the cluster that the Gaussian leaves.
+  /// The method is RefineMethod::Insert (sec. 5.2). In each round, the p = 4 cells of largest error, eq. (6), get one
+  /// more cluster. Each new cluster starts as a copy of the Gaussian of largest distortion, with its own covariance
+  /// (Algorithm 2, lines 5, 18 and 21). The default method is RefineMethod::Agglomerate, because it gives better maps.
+  /// If RefineMethod::Insert is selected, two more defaults differ from the paper. More cells are refined at a time,
+  /// which keeps all threads busy. A new cluster starts with the covariance of the cluster that the Gaussian of largest
+  /// distortion belonged to.
   static RefineOptions yguel2009();
 };
 
 /// Gives the coarse scales more Gaussians where one Gaussian per cell represents the finer ones badly.
 ///
-/// The result depends on the finest scale only, which does not change. From fine to coarse, every coarse scale is
-/// rebuilt and gets the number of Gaussians that the budget allows, but at most one per finer Gaussian. The map is
-/// moved, not copied: `refine(std::move(map))` needs no memory for a second finest scale.
+/// The finest scale does not change, and the result depends on this scale only. From fine to coarse, every coarse scale
+/// is rebuilt. It gets the number of Gaussians that the budget allows, but at most one per Gaussian of the finer scale.
+/// The map is moved, not copied: `refine(std::move(map))` needs no memory for a second finest scale.
 ///
-/// RefineMethod::Agglomerate: agglomerate() merges the finer Gaussians below a cell into a dendrogram. Before, their
-/// covariances are enlarged by the square of half the side of a finest cell. Their areas are the numbers of occupied
-/// finest cells that they represent. From the top of all dendrograms of the scale, the most expensive merges are undone
-/// until the budget is used. This method uses no random numbers.
+/// RefineMethod::Agglomerate: agglomerate() makes one dendrogram per cell from the finer Gaussians below the cell. For
+/// this, the square of half the side of a finest cell is added to their variances. Their areas are the numbers of
+/// occupied finest cells that they represent. At first, each cell has one cluster. Then the function undoes the most
+/// expensive merges of all cells of the scale, from the top of the dendrograms, until the budget is used. This method
+/// uses no random numbers.
 ///
 /// RefineMethod::Insert, Yguel 2009 sec. 5: the p cells of largest error, eq. (6), get one more cluster each (see
 /// insertCluster(), Algorithm 2) and return to the queue with their new error. This repeats until the budget is used.
@@ -143,9 +149,9 @@ struct GAUSSMAP_API RefineOptions {
 /// Every cluster is the moment match of its children, weighted by numbers of points. The total weight of a scale thus
 /// stays the number of points.
 ///
-/// Error curves, MaxBytes and MaxError need one dendrogram for all budgets: RefineMethod::Agglomerate and D = 3. The
-/// curve of a scale is measured with the finer scale as refined. A scale that cannot reach MaxError gets one cluster
-/// per finer Gaussian and is listed in RefineResult::not_reached.
+/// Error curves, MaxBytes and MaxError need RefineMethod::Agglomerate, because one dendrogram gives the clusters for
+/// all budgets. They also need D = 3. The curve of a scale is measured after the finer scale has been refined. A scale
+/// that cannot reach MaxError gets one cluster per finer Gaussian and is listed in RefineResult::not_reached.
 ///
 /// Throws std::invalid_argument in these cases:
 /// - A budget or an option is out of range; the message names it.

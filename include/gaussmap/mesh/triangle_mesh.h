@@ -12,12 +12,12 @@
 
 namespace gaussmap {
 
-/// Surfaces as triangles: the ground truth for scans and maps. A triangle without area is valid; it represents a line
-/// segment or a point.
+/// Surfaces made of triangles. A mesh can be the ground truth for scans and maps. A triangle without area is valid; it
+/// represents a line segment or a point.
 struct TriangleMesh {
-  using Triangle = std::array<std::uint32_t, 3>;  ///< three vertices, counter-clockwise seen from the open side
+  using Triangle = std::array<std::uint32_t, 3>;  ///< three vertices, counter-clockwise when seen from free space
   std::vector<Eigen::Vector3d> vertices;          ///< [m]
-  std::vector<Triangle> triangles;                ///< indices into `vertices`
+  std::vector<Triangle> triangles;                ///< each with three indices of `vertices`
 };
 
 /// Throws std::invalid_argument if a vertex is not finite or beyond 1e70 m, or if an index is out of range. The message
@@ -35,8 +35,8 @@ GAUSSMAP_API TriangleMesh transformed(TriangleMesh mesh, const Pose& pose);
 
 /// Returns `count` random points on the triangles [m], in the order of the triangles.
 ///
-/// The number of points per triangle is its share of the area, rounded up or down. Same mesh + same seed = same points.
-/// Throws std::invalid_argument if the mesh has a fault (see checkMesh()), or if it has no area and count > 0.
+/// Each triangle gets a number of points proportional to its area, rounded up or down. Same mesh + same seed = same
+/// points. Throws std::invalid_argument if the mesh has a fault (see checkMesh()), or if it has no area and count > 0.
 GAUSSMAP_API std::vector<Eigen::Vector3d> sampleSurface(const TriangleMesh& mesh, std::size_t count,
                                                         std::uint64_t seed = 1);
 

@@ -19,8 +19,9 @@ namespace gaussmap {
 
 /// Converts the Gaussians of all scales (coarsest first), or of one scale, to a PCL cloud in key order.
 ///
-/// The means are relative to sensor_origin_. It is zero, unless floats would lose a thousandth of a finest cell far
-/// from the origin. Throws std::out_of_range if the map does not have the scale.
+/// The means are relative to the cloud's sensor_origin_. This is zero unless the map is so far from the origin that a
+/// float would be wrong by more than 1/1000 of the side of a finest cell. Throws std::out_of_range if the map does not
+/// have the scale.
 GAUSSMAP_API pcl::PointCloud<PointGaussian> toPointCloud(const GaussianMapOctree& map,
                                                          std::optional<int> scale = std::nullopt);
 
@@ -39,7 +40,8 @@ GaussianMapOctree buildMap(const pcl::PointCloud<PointT>& cloud, const MapOption
   return build<3>(countPoints(Grid<3>(options).options().resolution, points, threads), options);
 }
 
-/// Converts the nearest ranges of a range image to PCL's range image, with the sensor at `sensor` in the map frame.
+/// Converts a range image to PCL's range image. A pixel gets its nearest range. `sensor` is the pose of the sensor:
+/// sensor frame to map frame.
 ///
 /// PCL's image has pixels of equal angles and the frame LASER_FRAME: x forward, y left, z up. An image without returns
 /// becomes an empty image. Throws std::invalid_argument for the image of a camera, because PCL has another class for
@@ -48,8 +50,8 @@ GAUSSMAP_API pcl::RangeImage toPclRangeImage(const RangeImage& image, const Pose
 
 /// Converts PCL's range image to a range image with the same angular resolution.
 ///
-/// Far ranges (+infinity) and unobserved pixels become pixels without a return. `sensor` is the pose with which PCL's
-/// image was made. Throws std::invalid_argument if the image is empty or has no angular resolution.
+/// Far ranges (+infinity) and unobserved pixels become pixels without a return. `sensor` is the pose of the sensor with
+/// which PCL's image was made. Throws std::invalid_argument if the image is empty or has no angular resolution.
 GAUSSMAP_API RangeImage fromPclRangeImage(const pcl::RangeImage& image, const Pose& sensor);
 
 }  // namespace gaussmap

@@ -30,15 +30,15 @@ struct DynamicPointsFilterOptions {
   /// Frame of the points. ScanFrame::Sensor: sensor_origin_ and sensor_orientation_ transform them into the map frame.
   ScanFrame frame = ScanFrame::Sensor;
   float threshold = 0.0f;                     ///< a place is free if its log-odds of occupancy are below this value
-  UnknownSpace unknown = UnknownSpace::Keep;  ///< for points where the map has no cell
+  UnknownSpace unknown = UnknownSpace::Keep;  ///< what happens to points where the map has no cell
 };
 
-/// Removes the points of moving objects: the points at places that are free according to a map's occupancy.
+/// Removes the points of moving objects. These are the points at places that a map marks as free by its occupancy.
 ///
-/// The occupancy comes from OnlineMapper; in a map of build(), no place is free. Indices, setNegative(), removed
-/// indices, setKeepOrganized() and setUserFilterValue() work as in pcl::PassThrough. Non-finite points are always
-/// removed. Any point type with x, y, z can be used. Without a map, or if the pose is not valid, the filter prints an
-/// error and returns no points.
+/// Only a map of OnlineMapper has occupancy. A cell of a map of build() is never free, unless `threshold` is above 10.
+/// Indices, setNegative(), removed indices, setKeepOrganized() and setUserFilterValue() work as in pcl::PassThrough.
+/// Non-finite points are always removed. Any point type with x, y, z can be used. Without a map, or if the pose is not
+/// valid, the filter prints an error and returns no points.
 template <typename PointT>
 class GAUSSMAP_API DynamicPointsFilter : public pcl::FilterIndices<PointT> {
  public:
@@ -52,7 +52,7 @@ class GAUSSMAP_API DynamicPointsFilter : public pcl::FilterIndices<PointT> {
     this->filter_name_ = "DynamicPointsFilter";
   }
 
-  /// Sets the map whose occupancy decides.
+  /// Sets the map. Its occupancy decides which places are free.
   void setMap(MapConstPtr map) { map_ = std::move(map); }
   /// Returns the map.
   const MapConstPtr& getMap() const { return map_; }

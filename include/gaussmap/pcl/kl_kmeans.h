@@ -28,8 +28,8 @@ class GAUSSMAP_API PointCloudKLKMeans : public pcl::PCLBase<PointGaussian> {
   /// Sets the seed of the random numbers.
   void setSeed(std::uint64_t seed) { options_.seed = seed; }
 
-  /// Computes the clusters: the indices of their points in the input cloud, ascending. No cluster is empty. There are
-  /// at most as many clusters as set.
+  /// Computes the clusters. Each cluster is a list of indices of points in the input cloud, ascending. No cluster is
+  /// empty. Their number is at most that of setNumberOfClusters().
   void cluster(std::vector<pcl::PointIndices>& clusters);
 
   /// Returns the Gaussian of each cluster of the last cluster(): the moment match of its members. Scale, cell side and

@@ -19,7 +19,7 @@ namespace gaussmap {
 /// Estimates normals and curvatures of a cloud with pointNormals(). It is used like pcl::NormalEstimationOMP.
 ///
 /// The algorithm does not search for neighbours, so a search method and a radius have no effect (a radius causes a
-/// warning). Any point type with x, y, z can be used; PointOutT needs a normal and a curvature.
+/// warning). PointInT can be any point type with x, y, z. PointOutT needs the fields of a normal and a curvature.
 ///
 /// As with PCL's own class, normals point towards setViewPoint(), or otherwise towards the sensor's origin of the input
 /// cloud. setIndices() selects the points that get normals. setSearchSurface() sets the points from which the normals
@@ -40,8 +40,8 @@ class GAUSSMAP_API CellNormalEstimation : public pcl::Feature<PointInT, PointOut
     this->feature_name_ = "CellNormalEstimation";
   }
 
-  /// Sets the minimum number of points per plane. setKSearch(k) sets it to 0.7 k, so that the planes have about k
-  /// points.
+  /// Sets the minimum number of points per plane. setKSearch(k) sets this minimum to 0.7 k (at least 3), because planes
+  /// have more points than the minimum, on average about k.
   void setMinPoints(int points) {
     options_.min_points = points;
     this->k_ = 0;

@@ -16,13 +16,13 @@ namespace gaussmap {
 #pragma GCC diagnostic ignored "-Wpedantic"
 
 /// One Gaussian of a map as a PCL point. x y z is the mean, so any PCL tool can show and filter the cloud. The fields
-/// are those of the PCD files of savePcd(). PCL's templates are not compiled for this type: define PCL_NO_PRECOMPILE
-/// before the first PCL header if you use them with it, such as pcl::PassThrough.
+/// are those of the PCD files of savePcd(). The PCL libraries do not contain PCL's templates, such as pcl::PassThrough,
+/// for this type. To use them with it, define PCL_NO_PRECOMPILE before the first PCL header.
 struct EIGEN_ALIGN16 PointGaussian {
   PCL_ADD_POINT4D;      ///< mean [m]
   float covariance[6];  ///< xx xy xz yy yz zz [m^2]
   float weight;         ///< number of points
-  float occupancy;      ///< log-odds in [-10, 10]
+  float occupancy;      ///< log-odds; 10 everywhere in a map without occupancy
   float cell_side;      ///< side of its cell [m]
   float scale;          ///< 0 = finest; a float because pcl::PassThrough filters only floats
   std::int32_t cell_x,  ///< key of its cell, x

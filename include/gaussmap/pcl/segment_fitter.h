@@ -19,7 +19,7 @@
 
 namespace gaussmap {
 
-/// Builds a map of segments from PCL clouds with SegmentFitter, one cloud per sweep.
+/// Builds a map of segments from PCL clouds with SegmentFitter. Each cloud is one sweep of a planar laser.
 ///
 /// Call setInputCloud(), setIndices() to select some points, and fit() for each cloud, then map(). The points are in
 /// the sensor frame, and the pose of the sensor is in sensor_origin_ and sensor_orientation_, as after PCL's readers.
@@ -35,9 +35,9 @@ class GAUSSMAP_API PointCloudSegmentFitter : public pcl::PCLBase<PointT> {
   /// Sets which points of a cloud are used: a horizontal slice of a three-dimensional cloud, and a maximum range.
   void setPlanarScan(const PlanarScanOptions& options) { planar_ = options; }
 
-  /// Adds the cloud to the map. If the cloud is not usable (no cloud, not in a plane, or an invalid pose), prints an
-  /// error, changes nothing and returns statistics without beams. An empty cloud does the same without an error
-  /// message.
+  /// Adds the cloud to the map. If the cloud is not usable (no cloud, not in a plane, or an invalid pose), the function
+  /// prints an error. It then changes nothing and returns statistics without beams. For an empty cloud it also changes
+  /// nothing, but prints no error.
   SegmentStatistics fit() {
     if (!this->initCompute()) {
       PCL_ERROR("[gaussmap::PointCloudSegmentFitter::fit] no input cloud\n");
@@ -60,11 +60,12 @@ class GAUSSMAP_API PointCloudSegmentFitter : public pcl::PCLBase<PointT> {
     }
   }
 
-  /// Computes the points of the input cloud on each segment of the current map, in the order of the map.
+  /// Finds the points of the input cloud that lie on each segment of the current map. `segments` gets one list of
+  /// indices per segment, in the order of SegmentMap::segments.
   ///
   /// A point belongs to the nearest segment, if the distance in the xy plane of the map frame is at most `tolerance`
-  /// [m]. With a slice, the point must also lie in the slice. If fit() would not accept the cloud because of its pose,
-  /// prints an error and returns nothing.
+  /// [m]. If setPlanarScan() selected a slice, the point must also lie in the slice. Without a cloud or with an invalid
+  /// pose, the function prints an error and `segments` is empty.
   void segmentIndices(std::vector<pcl::PointIndices>& segments, double tolerance = 0.1) {
     segments.clear();
     if (!this->initCompute()) {

@@ -13,16 +13,20 @@ namespace gaussmap {
 
 /// Options of registerScan() and registerMap().
 struct RegistrationOptions {
-  /// Side of the cells [m] whose Gaussians represent the scan at the fine scales of the map, > 0. At the coarse scales
-  /// the cells are four times as wide. 0: the side of the map's finest cells.
+  /// The Gaussians of cells with this side represent the scan [m], > 0. 0: the side of the map's finest cells. At
+  /// scales of the map with wider cells, the cells of the scan are four times as wide. The last step never uses these.
   double resolution = 0.0;
-  std::size_t max_gaussians = 4000;  ///< maximum number of scan Gaussians per step, evenly chosen, >= 1
-  int max_iterations = 30;           ///< maximum per step from coarse to fine, >= 1
-  double kernel = 3.0;               ///< a residual of this many standard deviations has half of its usual cost, > 0
-  double translation = 5e-4;  ///< a step ends when an iteration moves less than this [m] and less than `rotation`
-  double rotation = 5e-5;     ///< a step ends when an iteration turns less than this [rad] and less than `translation`
-  double degenerate = 0.01;   ///< a pose is degenerate if smallest / largest information is at most this ratio
-  int threads = 0;            ///< 0 = all cores
+  /// Maximum number of Gaussians of the scan that a step uses, >= 1. If there are more, the step uses an even
+  /// selection of them.
+  std::size_t max_gaussians = 4000;
+  int max_iterations = 30;  ///< maximum number of iterations per step, >= 1
+  double kernel = 3.0;      ///< the robust kernel halves the cost of a residual of this many standard deviations, > 0
+  /// The last step ends when an iteration moves the pose by less than this [m], > 0, and turns it by less than
+  /// `rotation`. For earlier steps, both limits can be larger, in the same ratio.
+  double translation = 5e-4;
+  double rotation = 5e-5;    ///< limit of the turn, see `translation` [rad], > 0
+  double degenerate = 0.01;  ///< a pose is degenerate if smallest / largest information is at most this, >= 0
+  int threads = 0;           ///< 0 = all cores
 };
 
 /// The result of registerScan() and registerMap().
@@ -31,23 +35,25 @@ struct GAUSSMAP_API RegistrationResult {
   /// Covariance of (x, y, z [m], rotation vector about the sensor [rad]) along the map's axes, from the last iteration.
   /// It is symmetric positive definite, or zero if the map gives no information about the pose.
   PoseCovariance covariance = PoseCovariance::Zero();
-  /// The direction with the smallest information: a unit vector of (x, y, z, rotation vector times the RMS range of the
-  /// scan). Zero if the map gives no information about the pose.
+  /// The direction in which the pose is least certain: a unit vector of (x, y, z, rotation vector times the RMS range
+  /// of the scan). It is zero if the map gives no information about the pose.
   PoseDirection least_observable = PoseDirection::Zero();
   double fitness = 0.0;       ///< share of the scan's Gaussians within 3 standard deviations of a map Gaussian
   double mean_squared = 0.0;  ///< mean squared Mahalanobis distance of these Gaussians
-  int iterations = 0;         ///< of all steps
-  bool converged = false;     ///< the last step ended before max_iterations
+  int iterations = 0;         ///< number of iterations of all steps together
+  bool converged = false;     ///< true: the last step ended because the pose no longer moved or improved
   bool degenerate = true;     ///< some direction is unobservable (along a corridor, on a plain), see `least_observable`
 };
 
-/// Registers a scan to a map: refines the guess of its pose, from the coarsest scale to the finest.
+/// Registers a scan to a map: refines the guess of its pose. It uses all scales of the map, from the coarsest to the
+/// finest, with two steps per scale.
 ///
-/// At every scale, each Gaussian of the scan is matched with the nearest Gaussian of the map. The covariances are
-/// widened by a fraction of the side of the cells, first by more, then by less. The pose minimises the squared
-/// Mahalanobis distances under a robust kernel (Geman-McClure), by damped Gauss-Newton iterations. A map Gaussian does
-/// not constrain the pose along directions in which it fills its cell. A map Gaussian of the finest scale constrains it
-/// mainly along its thinnest direction.
+/// In each iteration, each Gaussian of the scan is matched with the nearest Gaussian of the map (Mahalanobis distance)
+/// in the eight nearest cells. The covariances are widened. The added standard deviation is 0.3 times the side of the
+/// map's cells in the first step of a scale, and 0.1 times in the second. The pose minimises the squared Mahalanobis
+/// distances under a robust kernel (Geman-McClure), by damped Gauss-Newton iterations. A map Gaussian does not
+/// constrain the pose along directions in which it fills its cell. At the finest scale, a map Gaussian constrains the
+/// pose mainly along its thinnest direction.
 ///
 /// `points` are in the scan frame [m]; non-finite points are ignored. Throws std::invalid_argument if an option is out
 /// of range (the message names it), the map is empty, or the guess has a fault (see poseFault()).
@@ -55,7 +61,9 @@ GAUSSMAP_API RegistrationResult registerScan(const std::vector<Eigen::Vector3d>&
                                              const Pose& guess = {}, const RegistrationOptions& options = {});
 
 /// Registers the map `source` to `map`, distribution to distribution. It works like registerScan(), with the Gaussians
-/// of `source` instead of those of a scan. The resulting pose transforms the frame of `source` into that of `map`.
+/// of `source` instead of those of a scan. These are from the scale of `source` whose cells are closest in side to
+/// those of the scan. If `source` is empty, the result is the guess. The resulting pose transforms the frame of
+/// `source` into that of `map`.
 GAUSSMAP_API RegistrationResult registerMap(const GaussianMap<3>& source, const GaussianMap<3>& map,
                                             const Pose& guess = {}, const RegistrationOptions& options = {});
 

@@ -19,37 +19,43 @@ struct SegmentFitterState;
 
 /// How a segment stores its observations.
 enum class EvidencePolicy {
-  MomentCells,  ///< weighted moments in small cells along the segment: like infinitely many particles, all kept
-  ParticleSets  ///< a limited number of random particles, Leal 2000 sec. 4.4
+  /// As weighted moments in small cells along the segment. This is like very many particles of which none is deleted.
+  MomentCells,
+  /// As a limited number of random particles, Leal 2000 sec. 4.4.
+  ParticleSets
 };
 
 /// Which particles are deleted when a segment has too many.
 enum class ParticleLimit {
-  Bins,    ///< random particles of each stretch of 0.25 m with too many
-  Segment  ///< random particles of the whole segment, as in the paper: parts that are seen often displace the others
+  /// The limit holds for every 0.25 m of the segment. Random particles of a stretch with too many are deleted.
+  Bins,
+  /// The limit holds for the whole segment, as in the paper. Random particles of the segment are deleted. Parts that
+  /// are seldom seen can then lose their particles.
+  Segment
 };
 
 /// Options of EvidencePolicy::ParticleSets.
 struct ParticleOptions {
   int samples = 30;  ///< M, particles per observation, >= 1
-  /// Maximum number of particles per metre of a segment, > 0. Lengths beyond 10 SegmentFitterOptions::min_length do not
-  /// count.
+  /// Maximum number of particles per metre of a segment, > 0. With ParticleLimit::Segment, only the first 10
+  /// SegmentFitterOptions::min_length of the length count. A stretch or segment can always have `samples` particles.
   double per_metre = 300.0;
   ParticleLimit limit = ParticleLimit::Bins;  ///< which particles are deleted
   std::uint64_t seed = 1;                     ///< same scans + same seed = same map
 };
 
-/// Decides how SegmentFitter::map() chooses the segments that explain the most evidence at the lowest cost.
+/// The tolerance and the costs with which SegmentFitter::map() chooses the segments. It maximises the number of
+/// explained observations minus the cost of the segments.
 ///
-/// Costs are in observations. The unit `average` is the mean number of observations per cell with evidence, so costs
-/// grow with the evidence.
+/// The unit of a cost is a number of observations. Some costs are multiples of `average`: the mean number of
+/// observations per cell with evidence. These costs grow with the evidence.
 struct SegmentOptimisationOptions {
-  double tolerance = 0.1;       ///< a segment explains only observations within this distance of its line [m], > 0
-  double segment_cost = 0.525;  ///< per segment [average], >= 0
-  double cell_cost = 0.006;     ///< per cell of its length [average], >= 0
-  double hole_cost = 0.03;      ///< in addition, per cell without evidence beside another such cell [average], >= 0
-  double crossing_cost = 0.09;  ///< per ray that passed through the segment [observations], >= 0
-  int rounds = 2;               ///< rounds of merging, filling and removing, >= 0
+  double tolerance = 0.1;       ///< a segment explains only cells at most this far from its line (RMS) [m], > 0
+  double segment_cost = 0.525;  ///< cost per segment [average], >= 0
+  double cell_cost = 0.006;     ///< cost per cell along a segment [average], >= 0
+  double hole_cost = 0.03;      ///< added per cell without evidence that is next to another such cell [average], >= 0
+  double crossing_cost = 0.09;  ///< cost per ray that passed through the segment [observations], >= 0
+  int rounds = 2;               ///< rounds of merging segments, filling gaps and removing segments, >= 0
 };
 
 /// Options of SegmentFitter.
@@ -62,29 +68,34 @@ struct GAUSSMAP_API SegmentFitterOptions {
   static SegmentFitterOptions leal2000();
 
   EvidencePolicy policy = EvidencePolicy::MomentCells;  ///< how a segment stores its observations
-  ParticleOptions particles;                            ///< of EvidencePolicy::ParticleSets
-  SensorNoise noise;                                    ///< of the laser
+  ParticleOptions particles;                            ///< options of EvidencePolicy::ParticleSets
+  SensorNoise noise;                                    ///< noise of the laser
   double cell = 0.1;                                    ///< length of the cells along a segment [m], > 0
-  double min_length = 1.0;                              ///< l_min, limits the particles of a segment [m], > 0
-  double min_half_width = 0.1;  ///< minimum half width of the polygon whose observations a segment takes [m], > 0
-  double growth = 0.3;          ///< the polygon extends the segment by this length at both ends [m], >= 0
-  double gap = 0.5;             ///< adjacent beams are linked if their ends are at most this far apart [m], > 0
-  bool prune = true;            ///< deletes segments if many more rays cross them than end on them
-  bool optimise = true;         ///< map() decides on all segments together, if the utility is optimisable()
-  SegmentOptimisationOptions optimisation;  ///< if `optimise` is set
+  double min_length = 1.0;                              ///< l_min, only for ParticleOptions::per_metre [m], > 0
+  /// Minimum half width of the polygon of a segment [m], > 0. The half width is 3 sigma_n if that is larger. Only
+  /// observations in the polygon can be associated with the segment.
+  double min_half_width = 0.1;
+  double growth = 0.3;  ///< the polygon extends beyond both ends of the segment by this length [m], >= 0
+  /// Adjacent beams are linked if their ends are less than this apart [m], > 0. A segment is split where it has no
+  /// evidence for more than this length.
+  double gap = 0.5;
+  bool prune = true;     ///< deletes segments if many more rays cross them than end on them
+  bool optimise = true;  ///< map() optimises all segments together, if SegmentUtility::optimisable() is true
+  SegmentOptimisationOptions optimisation;  ///< options of this optimisation
 };
 
-/// Reports the work of one call of SegmentFitter::add() and the map after it: the curves of Leal 2000 Figs. 7 and 8.
+/// What one call of SegmentFitter::add() did, and the state of the map after it. The curves of Leal 2000 Figs. 7 and 8
+/// show such values.
 struct SegmentStatistics {
-  std::size_t beams = 0;         ///< beams with a return
-  std::size_t associated = 0;    ///< beams that were associated with a segment of the map
-  std::size_t created = 0;       ///< new segments
-  std::size_t splits = 0;        ///< segments split
-  std::size_t merges = 0;        ///< pairs of segments merged
-  std::size_t pruned = 0;        ///< segments deleted because rays crossed them
-  std::size_t segments = 0;      ///< segments of the map after the scan
-  double normal_variance = 0.0;  ///< mean of sigma_n^2 over all observations of the map [m^2]
-  double coverage = 0.0;         ///< share of the scan's returns within 10 cm of the map after the scan
+  std::size_t beams = 0;         ///< number of beams with a return
+  std::size_t associated = 0;    ///< number of beams that were associated with a segment of the map
+  std::size_t created = 0;       ///< number of new segments
+  std::size_t splits = 0;        ///< number of segments that a vote split; splits at holes do not count
+  std::size_t merges = 0;        ///< number of merges of two segments
+  std::size_t pruned = 0;        ///< number of segments deleted by SegmentFitterOptions::prune
+  std::size_t segments = 0;      ///< number of segments of the map after the scan, before the optimisation of map()
+  double normal_variance = 0.0;  ///< mean sigma_n^2 of all segments, weighted by observations [m^2]
+  double coverage = 0.0;         ///< share of the scan's returns within 10 cm of a segment after the scan
 };
 
 /// Builds a map of linked line segments scan by scan, after Leal, Scheding, Dissanayake 2000.

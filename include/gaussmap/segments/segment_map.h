@@ -9,7 +9,7 @@
 
 namespace gaussmap {
 
-/// A straight piece of wall, map frame. Leal, Scheding, Dissanayake 2000, sec. 3.
+/// A straight piece of wall in the map frame, as in Leal, Scheding, Dissanayake 2000, sec. 3.
 ///
 /// A segment is oriented: seen from start to end, the free space from which it was observed is on the left. The two
 /// faces of a thin wall are two segments.
@@ -17,8 +17,8 @@ struct GAUSSMAP_API Segment {
   Vector<2> start{0.0, 0.0};     ///< first end point [m]
   Vector<2> end{0.0, 0.0};       ///< second end point [m]
   double normal_variance = 0.0;  ///< sigma_n^2, variance of the evidence across the line [m^2], eq. (2)
-  /// Covariance of the line: (offset along the normal at the middle of the segment [m], angle [rad]), symmetric
-  /// positive definite.
+  /// Covariance of two errors of the line: its offset along the normal at the middle of the segment [m], and its angle
+  /// [rad]. Symmetric positive definite.
   Matrix<2> covariance = Matrix<2>::Zero();
   double weight = 0.0;         ///< number of observations that the segment represents
   std::int64_t last_seen = 0;  ///< number of the last scan that observed the segment, 0 = the first scan
@@ -29,23 +29,23 @@ struct GAUSSMAP_API Segment {
   Vector<2> direction() const;
   /// Returns the unit normal on the left, towards free space.
   Vector<2> normal() const;
-  /// Returns the distance of a point from the segment, including its end points [m].
+  /// Returns the distance from a point to the nearest point of the segment [m].
   double distance(const Vector<2>& point) const;
 };
 
 /// A 2-D map of line segments, linked into chains. Each segment is in exactly one chain.
 ///
-/// If the lines of two linked segments meet near the end of the first and the start of the second, both end there.
-/// Otherwise there is a short distance between them.
+/// The end of a segment is linked to the start of the next one. If the lines of both meet near these points, both
+/// points are moved to the intersection. Otherwise there is a short distance between them.
 struct GAUSSMAP_API SegmentMap {
   /// A sequence of linked segments.
   struct Chain {
-    std::size_t first = 0;  ///< first segment of the chain
-    std::size_t last = 0;   ///< one past the last segment; the segments are in the order of the chain
+    std::size_t first = 0;  ///< index of the first segment of the chain
+    std::size_t last = 0;   ///< index of the last segment, plus 1
     bool closed = false;    ///< true: the last segment is linked to the first
   };
-  std::vector<Segment> segments;  ///< chain after chain
-  std::vector<Chain> chains;      ///< in the order of their first segment
+  std::vector<Segment> segments;  ///< chain after chain, each in the order of its links
+  std::vector<Chain> chains;      ///< in the order of Chain::first
 
   /// Returns the sum of the segments' lengths [m].
   double totalLength() const;

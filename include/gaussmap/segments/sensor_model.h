@@ -14,8 +14,8 @@ namespace gaussmap {
 /// Standard deviations of a range-bearing sensor, Leal 2000 eq. (1). The errors are independent and normal, with zero
 /// mean.
 struct SensorNoise {
-  double range = 0.02;    ///< [m], >= 0
-  double bearing = 2e-3;  ///< [rad], >= 0
+  double range = 0.02;    ///< standard deviation of the range [m], >= 0
+  double bearing = 2e-3;  ///< standard deviation of the bearing [rad], >= 0
 };
 
 /// A possible end of a beam and its weight. The weights of one observation sum to 1.
@@ -24,13 +24,14 @@ struct ObservationPoint {
   double weight = 0.0;           ///< share of the observation
 };
 
-/// Computes where a beam can have ended: propagates the noise of range, bearing and pose through h of Leal 2000 eq.
-/// (1), without linearising h.
+/// Computes where a beam can have ended. h of Leal 2000 eq. (1) is the end of a beam, computed from its range, its
+/// bearing and the pose. The model applies h to possible values of these, without linearising h.
 class GAUSSMAP_API ObservationModel {
  public:
   virtual ~ObservationModel() = default;
-  /// Overwrites `points` with the possible ends of one beam that has a return. Their number is the same for every beam
-  /// of a scan. `number` is the unique number of the observation in the map.
+  /// Replaces the content of `points` by the possible ends of one beam. The beam has a return. Every beam of a scan
+  /// gets the same number of points. `number` is the number of the observation; it is different for every observation
+  /// of the map.
   virtual void observe(const LaserScan& scan, std::size_t beam, std::uint64_t number,
                        std::vector<ObservationPoint>& points) const = 0;
 };
@@ -51,7 +52,7 @@ class GAUSSMAP_API SampledObservations : public ObservationModel {
   std::uint64_t seed_;
 };
 
-/// Represents an observation by a few points with the mean and covariance of infinitely many samples.
+/// Represents an observation by a few points. Their mean and covariance are close to those of infinitely many samples.
 ///
 /// The points come from the unscented transform of (range, bearing, x, y, heading), Julier and Uhlmann 1997 with
 /// kappa = 0. There are ten points, or four if the pose is exact.

@@ -10,20 +10,23 @@
 
 namespace gaussmap {
 
-/// The goal functions o_1, o_2, ... of a segment's evidence, Leal 2000 sec. 4.2 eq. (3). Utilities are computed from
-/// them.
+/// Properties of a segment and its evidence. Utilities are computed from them. The paper calls them goal functions o_1,
+/// o_2, ..., Leal 2000 sec. 4.2 eq. (3).
 struct SegmentGoals {
   double normal_variance = 0.0;  ///< o_1 = sigma_n^2 of the evidence across the line [m^2]
-  double length = 0.0;           ///< o_2 [m]
+  double length = 0.0;           ///< o_2, length of the segment [m]
   double weight = 0.0;           ///< number of observations
-  double cells = 0.0;            ///< number of cells along the line with evidence
-  double misfit = 0.0;           ///< sum over these cells of their squared distance from the line [m^2]
-  Vector<2> start{0.0, 0.0};     ///< first end point [m], map frame
-  Vector<2> end{0.0, 0.0};       ///< second end point [m], map frame
+  /// Number of cells along the line that have evidence. A cell with n observations counts n / (n + 1).
+  double cells = 0.0;
+  /// Sum over these cells [m^2]: n / (n + 1) times the mean squared distance of the cell's observations from the line
+  /// that fits the cells best.
+  double misfit = 0.0;
+  Vector<2> start{0.0, 0.0};  ///< first end point [m], map frame
+  Vector<2> end{0.0, 0.0};    ///< second end point [m], map frame
 };
 
-/// Votes for a split, a merge or no change of a segment. The highest vote wins, Leal 2000 eq. (3). If the votes are
-/// equal, the segment does not change.
+/// Votes for a split, a merge or no change of a segment. The highest vote wins, Leal 2000 eq. (3). A split or merge
+/// must have more than the vote for no change.
 class GAUSSMAP_API SegmentUtility {
  public:
   virtual ~SegmentUtility() = default;
@@ -35,23 +38,24 @@ class GAUSSMAP_API SegmentUtility {
   virtual double nothing(const SegmentGoals&) const { return 0.0; }
   /// Receives the position of the observer [m, map frame] before every scan.
   virtual void observe(const Vector<2>&) {}
-  /// Returns true if a segment with these end points needs a new decision because the observer has moved. The function
-  /// is called for segments without new evidence.
+  /// Returns true if a segment with these end points needs new votes, although it has no new evidence. The reason can
+  /// be that the observer has moved.
   virtual bool reconsider(const Vector<2>& start, const Vector<2>& end) const;
-  /// Returns true if SegmentFitter::map() may optimise all segments together (see SegmentFitterOptions::optimise).
-  /// Return true only if the votes are description lengths: the optimisation would undo decisions for other goals.
+  /// Returns true if SegmentFitter::map() may optimise all segments together (see SegmentFitterOptions::optimise). A
+  /// utility of your own should return true only if its votes are description lengths. The optimisation would undo
+  /// decisions that have other goals.
   virtual bool optimisable() const { return false; }
 };
 
 /// Options of ViewpointInvariantUtility, Leal 2000 eq. (4).
 struct ViewpointInvariantOptions {
-  double sigma_threshold = 0.06;  ///< sigma_th, maximum standard deviation across a segment [m], > 0
+  double sigma_threshold = 0.06;  ///< sigma_th, segments with at least this sigma_n are split [m], > 0
   double min_length = 1.0;        ///< l_min, shorter segments are not split [m], > 0
-  double merge_ratio = 0.5;       ///< alpha, merges if the variance is at most alpha sigma_th^2, in [0, 1)
+  double merge_ratio = 0.5;       ///< alpha, a merge needs sigma_n^2 <= alpha sigma_th^2, in [0, 1)
 };
 
-/// The viewpoint-invariant utility of the paper, Leal 2000 eq. (4). A vote is 1 for yes and 0 for no. The vote for no
-/// change is always 0.5.
+/// The viewpoint-invariant utility of the paper, Leal 2000 eq. (4). The vote for a split or a merge is 1 (yes) or 0
+/// (no). The vote for no change is always 0.5.
 class GAUSSMAP_API ViewpointInvariantUtility : public SegmentUtility {
  public:
   /// Stores the options. Throws std::invalid_argument if an option is out of range; the message names the option.
@@ -66,10 +70,11 @@ class GAUSSMAP_API ViewpointInvariantUtility : public SegmentUtility {
 
 /// Options of ViewpointDependentUtility, Leal 2000 eq. (5).
 struct ViewpointDependentOptions {
-  ViewpointInvariantOptions far;  ///< outside the field
-  double radius = 5.0;            ///< radius of the field VF around the observer [m], > 0
+  ViewpointInvariantOptions far;  ///< options for segments outside the field VF
+  double radius = 5.0;            ///< radius of the field VF, a circle around the observer [m], > 0
   double scale = 0.33;            ///< l_min inside the field is `scale` times l_min outside, in (0, 1]
-  /// Position of the observer [m], map frame, if `fixed`. Otherwise it is the position of the sensor in the last scan.
+  /// Position of the observer [m], map frame. If `fixed` is false, the position of the sensor replaces it with each
+  /// scan.
   Vector<2> viewpoint{0.0, 0.0};
   bool fixed = false;  ///< true: the observer stays at `viewpoint`
 };
@@ -77,9 +82,9 @@ struct ViewpointDependentOptions {
 /// The viewpoint-dependent utility of the paper, Leal 2000 eq. (5). It is like eq. (4), with a smaller l_min for
 /// segments that meet the field around the observer.
 ///
-/// According to the text of the paper, but not to its equation, the map reverts after the observer has left. This class
-/// implements the text: it merges two segments outside the field that together are shorter than l_min. Only a visit can
-/// have split them.
+/// After the observer has left, the splits near its place are undone. The text of the paper says this, but its equation
+/// does not. This class merges two segments outside the field if together they are shorter than l_min. Outside the
+/// field, such short segments are not split, so they come from a visit of the observer.
 class GAUSSMAP_API ViewpointDependentUtility : public SegmentUtility {
  public:
   /// Stores the options. Throws std::invalid_argument if an option is out of range; the message names the option.
@@ -101,15 +106,16 @@ class GAUSSMAP_API ViewpointDependentUtility : public SegmentUtility {
 
 /// Options of DescriptionLengthUtility.
 struct DescriptionLengthOptions {
-  double sigma = 0.03;        ///< standard deviation of a cell from the line: sensor, pose and wall together [m], > 0
+  double sigma = 0.03;        ///< standard deviation of observations from the line [m], > 0
   double segment_cost = 3.0;  ///< kappa, cost of a segment [nat], >= 0
 };
 
-/// Votes with the decrease of the description length [nat].
+/// A vote is the decrease of the description length by a split or merge [nat].
 ///
-/// A segment costs `segment_cost`. A cell along the segment costs the negative log-likelihood of its distance from the
-/// line. A cell counts once, also if it is seen often. Pose errors of a few centimetres repeat, and a wall must not be
-/// split only because it was observed for a long time.
+/// The description length is the sum of two costs. Each segment costs `segment_cost`. Each cell along a segment costs
+/// the negative log-likelihood of its squared distance from the line: SegmentGoals::misfit divided by 2 sigma^2. A cell
+/// that is seen often counts at most once. Otherwise, a wall that is observed for a long time would be split because of
+/// pose errors of a few centimetres.
 class GAUSSMAP_API DescriptionLengthUtility : public SegmentUtility {
  public:
   /// Stores the options. Throws std::invalid_argument if an option is out of range; the message names the option.
@@ -122,7 +128,7 @@ class GAUSSMAP_API DescriptionLengthUtility : public SegmentUtility {
   DescriptionLengthOptions options_;
 };
 
-/// A utility that consists of functions. The vote of an empty function never wins.
+/// A utility whose votes come from functions. If a function is empty, its vote is minus infinity.
 struct GAUSSMAP_API UserUtility : public SegmentUtility {
   /// A function that returns U_split.
   using Split = std::function<double(const SegmentGoals& whole, const SegmentGoals& first, const SegmentGoals& second)>;
@@ -144,11 +150,11 @@ class GAUSSMAP_API CombinedUtility : public SegmentUtility {
  public:
   /// A utility and its weight.
   struct Part {
-    std::shared_ptr<SegmentUtility> utility;  ///< not empty
-    double weight = 1.0;                      ///< finite
+    std::shared_ptr<SegmentUtility> utility;  ///< must not be empty
+    double weight = 1.0;                      ///< factor of the votes, finite
   };
-  /// Makes a utility of parts. Throws std::invalid_argument if there are no parts, a pointer is empty, or a weight is
-  /// not finite.
+  /// Makes a utility from its parts. Throws std::invalid_argument if there are no parts, a pointer is empty, or a
+  /// weight is not finite.
   explicit CombinedUtility(std::vector<Part> parts);
   double split(const SegmentGoals& whole, const SegmentGoals& first, const SegmentGoals& second) const override;
   double merge(const SegmentGoals& first, const SegmentGoals& second, const SegmentGoals& whole) const override;

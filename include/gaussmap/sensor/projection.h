@@ -14,7 +14,7 @@ namespace gaussmap {
 /// columns are intervals of azimuth over the full turn. A planar laser has one row.
 struct SphericalProjection {
   std::vector<double> row_borders;  ///< rows + 1 elevations above the xy plane [rad], ascending
-  int columns = 0;  ///< of the full turn, >= 1; counter-clockwise, column 0 begins behind the sensor (-x)
+  int columns = 0;  ///< number of columns of the full turn, >= 1; counter-clockwise from the direction -x
 };
 
 /// The projection of a depth camera, with x to the right, y down and z forward: column = fx x / z + cx,
@@ -48,12 +48,12 @@ GAUSSMAP_API bool wraps(const Projection& projection);
 /// not a return (see isReturn()).
 GAUSSMAP_API std::optional<Pixel> pixelOf(const Projection& projection, const Eigen::Vector3d& point);
 
-/// Returns the unit vector through the centre of a pixel, sensor frame. The row must lie in the image; the column can
-/// be any number.
+/// Returns the unit vector through the centre of a pixel, sensor frame. The row must lie in the image. The column can
+/// lie outside the image.
 GAUSSMAP_API Eigen::Vector3d directionOf(const Projection& projection, Pixel pixel);
 
-/// A rectangle of pixels, including both ends. If the projection wraps(), columns can be below 0 or beyond the last
-/// one.
+/// A rectangle of pixels. It includes the first and the last row and column. If the projection wraps(), columns can be
+/// below 0 or beyond the last column of the image.
 struct PixelBox {
   /// First row.
   int first_row = 0, last_row = -1;  ///< last row
@@ -63,31 +63,33 @@ struct PixelBox {
   bool empty() const { return last_row < first_row || last_column < first_column; }
 };
 
-/// Returns a rectangle that contains every pixel that can see a point of a ball. The rectangle is empty if the whole
+/// Returns a rectangle that contains every pixel that can see a point of a ball. If the rectangle is empty, the whole
 /// ball is out of view. The centre is in the sensor frame [m], radius >= 0 [m].
 GAUSSMAP_API PixelBox pixelsOf(const Projection& projection, const Eigen::Vector3d& centre, double radius);
 
-/// Throws std::invalid_argument if a projection is not usable or has more than 2^28 pixels; the message gives the
-/// value.
+/// Throws std::invalid_argument if a member of a projection is out of range or the image has more than 2^28 pixels. The
+/// message gives the value.
 GAUSSMAP_API void checkProjection(const Projection& projection);
 
 /// Determines the rows and columns of a spinning lidar from one of its scans [m, sensor frame], or returns std::nullopt
 /// if there are fewer than three returns.
 ///
 /// Points that are not returns (see isReturn()) are ignored. If the elevations form rings, each ring is a row.
-/// Otherwise the height of a row is the typical distance between points above each other. The width of a column is two
-/// steps between neighbours of a ring, which leaves few empty pixels on a surface. A scan within one plane gets one
-/// row.
+/// Otherwise all rows have the same height. It is the 90 % quantile of the differences in elevation between points one
+/// above the other, but at least the median difference in azimuth between neighbours. The width of a column is twice
+/// the median difference in azimuth between neighbours of a ring. This leaves few empty pixels on a surface. If no
+/// point lies more than 0.05 degrees above another, there is one row.
 GAUSSMAP_API std::optional<SphericalProjection> findSphericalProjection(const std::vector<Eigen::Vector3d>& points);
 
-/// Determines the camera of an organised cloud by least squares, or returns std::nullopt if no camera explains the
-/// points to within one pixel.
+/// Determines the camera of an organised cloud by least squares. Returns std::nullopt if the RMS distance between the
+/// pixels of the points and their projections is one pixel or more.
 ///
-/// The points [m, sensor frame] are row by row, `columns` points per row, NaN without depth.
+/// The points [m, sensor frame] are row by row, with `columns` points per row. A pixel without depth is NaN.
 GAUSSMAP_API std::optional<PlanarProjection> findPlanarProjection(const std::vector<Eigen::Vector3d>& points,
                                                                   int columns);
 
-/// Returns findPlanarProjection() of an organised cloud (`columns` > 0) if there is a camera, otherwise
+/// Returns the projection of a cloud [m, sensor frame]. For an organised cloud (`columns` > 0), the function tries
+/// findPlanarProjection() first. If there is no camera, or the cloud is not organised, it uses
 /// findSphericalProjection().
 GAUSSMAP_API std::optional<Projection> findProjection(const std::vector<Eigen::Vector3d>& points, int columns = 0);
 

@@ -11,12 +11,12 @@
 
 namespace gaussmap {
 
-/// The ranges that the beams of one pixel measured, from the sensor [m]. In an empty pixel, no beam returned and
-/// `nearest` is infinite.
+/// The smallest and the largest range that the beams of one pixel measured. A range is a distance from the sensor. If
+/// no beam of the pixel returned, the pixel is empty and `nearest` is infinite.
 struct GAUSSMAP_API PixelRanges {
   float nearest = std::numeric_limits<float>::infinity();  ///< smallest range [m]
   float farthest = 0.0f;                                   ///< largest range [m]
-  /// Returns true if the pixel has no return.
+  /// Returns true if the pixel has no range.
   bool empty() const { return nearest > farthest; }
 };
 
@@ -39,8 +39,9 @@ class GAUSSMAP_API RangeImage {
 
   /// Adds one point [m, sensor frame], if it is a return in the field of view.
   void add(const Eigen::Vector3d& point);
-  /// Treats every empty pixel as free space up to `range` [m], for sensors that see every object up to this range.
-  /// Throws std::invalid_argument unless the range is positive and finite as a float.
+  /// Gives every empty pixel the range `range` [m], so that the space up to it counts as free. Use it only for sensors
+  /// that see every object up to this range. Throws std::invalid_argument unless the range is positive and finite as a
+  /// float.
   void noReturnIsFree(double range);
 
   /// Returns the ranges of a pixel, with row in [0, rows) and column in [0, columns).
@@ -48,12 +49,12 @@ class GAUSSMAP_API RangeImage {
   /// Returns the ranges of a pixel with any row and column. Outside the image the pixel is empty. Columns wrap around
   /// if the projection does (see wraps()).
   PixelRanges around(int row, int column) const;
-  /// Returns the point at the nearest range in the centre of a pixel [m, sensor frame]. The pixel must not be empty.
-  /// Row and column are as for around().
+  /// Returns the point in the direction of the pixel's centre, at the smallest range of the pixel [m, sensor frame].
+  /// The pixel must not be empty. Row and column are as for around().
   Eigen::Vector3d nearestPoint(int row, int column) const;
-  /// Returns the largest range in the image [m], or 0 if there is no return.
+  /// Returns the largest range in the image [m], including that of noReturnIsFree(), or 0 if all pixels are empty.
   float farthest() const { return farthest_; }
-  /// Returns the number of points added.
+  /// Returns the number of points in the image.
   std::size_t returns() const { return returns_; }
   /// Returns the number of pixels with points.
   std::size_t filledPixels() const { return filled_; }

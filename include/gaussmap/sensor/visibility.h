@@ -13,25 +13,25 @@ namespace gaussmap {
 /// How one scan observes a point in space.
 enum class Visibility {
   OutOfView,     ///< no pixel sees the point
-  NoEvidence,    ///< too few of the beams around the point returned
-  Hidden,        ///< a beam around the point ended in front of it
-  AtSurface,     ///< the beams ended close to the point
+  NoEvidence,    ///< fewer than half of the pixels around the point have returns
+  Hidden,        ///< a beam around the point ended clearly in front of it
+  AtSurface,     ///< neither Hidden nor PassedThrough: the point is close to the surface that the beams hit
   PassedThrough  ///< all beams around the point ended clearly behind it
 };
 
-/// Decides when beams pass through a point. The limits are in metres, not in cells: limits in cells that work at a
-/// resolution of 0.1 m fail at 0.2 m.
+/// Decides when beams pass through a point. The limits are in metres, so they do not depend on the resolution of a map.
 struct VisibilityOptions {
-  double tolerance = 0.3;  ///< all beams around the point end at least this far behind it, by range [m], >= 0
-  /// Minimum distance of the point from the surface on which the beams end [m], >= 0. On a road seen at a grazing
-  /// angle, a beam ends metres behind a point that lies on the road.
+  /// The ranges of all beams around the point must exceed the range of the point by more than this [m], >= 0.
+  double tolerance = 0.3;
+  /// The point must be at least this far from the surface on which the beams end [m], >= 0. This is needed at grazing
+  /// angles: a beam can end metres behind a point, although both lie on the same road.
   double clearance = 0.35;
 };
 
 /// Returns the visibility of a point [m, sensor frame] from the 3 x 3 pixels around it (1 x 3 in an image of one row).
 ///
-/// At least half of these pixels must have returns. A single pixel would free thin objects and edges, because its beam
-/// can pass beside them.
+/// At least half of these pixels must have returns. A single pixel is not enough at thin objects and edges: its beam
+/// can pass beside them, and they would seem to be free.
 GAUSSMAP_API Visibility visibilityOf(const RangeImage& image, const Eigen::Vector3d& point,
                                      const VisibilityOptions& options = {});
 

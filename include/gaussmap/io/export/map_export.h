@@ -21,7 +21,7 @@ enum class PlyContent {
 /// What the colours of a PLY file show.
 enum class PlyColour {
   Height,  ///< height of the mean, in the viridis colour scale
-  Normal   ///< direction of the normal: sand for horizontal surfaces, blue if it points along x, red along y
+  Normal   ///< direction of the normal: blue along x, red along y, sand along z (a horizontal surface)
 };
 
 /// Options of savePly().
@@ -34,13 +34,13 @@ struct GaussianPlyOptions {
 
 /// Writes the Gaussians of a map to a binary little-endian PLY file of floats, and returns their number.
 ///
-/// If floats would lose a thousandth of a finest cell far from the origin, the coordinates are relative to an origin at
-/// a multiple of 1024 m. The header then gives the offset to add to x y z: `comment origin X Y Z`.
+/// Far from the origin, floats do not resolve a thousandth of a finest cell. The coordinates are then relative to a
+/// nearer origin, at multiples of 1024 m. The header gives this origin, to be added to x y z: `comment origin X Y Z`.
 ///
 /// PlyContent::Splats has the fields x y z, nx ny nz, f_dc_0..2, f_rest_0..44, opacity, scale_0..2 and rot_0..3. All
 /// f_rest are zero, because the colour is the same from all directions; some viewers require all 45. opacity is the
-/// value before the sigmoid: the log-odds of occupancy. scale is the natural logarithm of the standard deviations [m],
-/// rot is a unit quaternion (w x y z). The covariance is `R diag(exp(scale))^2 R'`.
+/// log-odds of occupancy; a viewer applies the sigmoid to it. scale is the natural logarithm of the standard deviations
+/// [m], rot is a unit quaternion (w x y z). The covariance is `R diag(exp(scale))^2 R'`.
 ///
 /// The write is atomic. Throws:
 /// - std::invalid_argument if sigma is not positive and finite
@@ -55,10 +55,12 @@ GAUSSMAP_API std::size_t savePly(const std::filesystem::path& path, const Gaussi
 /// The file holds all scales, coarsest first, or the given scale, in the order of the map. There is one point per
 /// Gaussian, in doubles, as raw appended data. The point data are:
 /// - covariance: 9 numbers [m^2]
-/// - deviation: symmetric root of the covariance [m]. To draw the ellipsoid of two standard deviations, apply the
-///   filter "Tensor Glyph" to it, with a sphere of radius 0.5, scale factor 4, not limited.
+/// - deviation: 9 numbers [m], the symmetric square root of the covariance. To draw ellipsoids of two standard
+/// deviations
+///   in ParaView, apply the filter "Tensor Glyph" to it. Use a sphere of radius 0.5 and a scale factor of 4, and do not
+///   limit the size of the glyphs.
 /// - normal, weight, log_odds, occupancy (probability), scale, cell_side [m]
-/// - parent: point of the parent Gaussian; -1 if the file does not hold it
+/// - parent: index of the point of the parent Gaussian; -1 if the parent is not in the file
 ///
 /// The write is atomic, and the same map gives the same bytes. Throws std::out_of_range if the map does not have the
 /// scale, and FileError if the file cannot be written.

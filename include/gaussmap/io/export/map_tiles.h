@@ -25,12 +25,14 @@ struct WrittenTiles {
   std::size_t gaussians = 0;  ///< number of Gaussians in all files
 };
 
-/// Writes a map as a folder of PCD files, one per square of the ground, for dynamic map loading.
+/// Writes a map as a folder of PCD files, one per tile (a square of the ground). A program can then load only the tiles
+/// near the robot.
 ///
-/// The layout is that of Autoware's pointcloud_map_loader: the index gives `x_resolution`, `y_resolution`, and per file
-/// the line `tile_X_Y.pcd: [X, Y]` with its lower corner. A Gaussian belongs to the square that contains its mean. The
-/// files have the fields of savePcd(), with means in the map frame as floats, so x, y, z form a point cloud map. A
-/// comment in the index stores the options of the map.
+/// The layout is that of Autoware's pointcloud_map_loader. The index gives the side of the tiles as `x_resolution` and
+/// `y_resolution`. It has one line `tile_X_Y.pcd: [X, Y]` per file, where X and Y are the lower corner of the tile [m].
+/// A Gaussian belongs to the tile that contains its mean. The files have the fields of savePcd(). The means are floats
+/// in the map frame, so other programs can read x, y, z as a point cloud map. A comment in the index stores the options
+/// of the map.
 ///
 /// The write is atomic: the folder appears only when it is complete. Throws FileError if the folder exists and is not
 /// empty, or cannot be written. Throws std::out_of_range if the map does not have the scale or reaches beyond 2^31 m,
@@ -40,9 +42,9 @@ GAUSSMAP_API WrittenTiles saveTiles(const std::filesystem::path& folder, const G
 
 /// Reads the map from a folder of tiles. The map has the scales that were written.
 ///
-/// A folder can hold only the finest scale with one Gaussian per cell. If the index then gives the options, the coarser
-/// scales are rebuilt with one Gaussian per cell. Throws FileError if a file is not valid; the message gives the index
-/// or the tile.
+/// There is one exception: the coarser scales are rebuilt, with one Gaussian per cell, if the index stores the options
+/// and the tiles hold only the finest scale, with one Gaussian per cell and without occupancy. Throws FileError if a
+/// file is not valid; the message gives the index or the tile.
 GAUSSMAP_API GaussianMap<3> loadTiles(const std::filesystem::path& folder);
 
 }  // namespace gaussmap

@@ -14,19 +14,25 @@ namespace gaussmap {
 
 /// Writes a map of segments to a binary PCD file that any PCL tool can open.
 ///
-/// The file is an organised cloud with one segment per row: its start and its end. The fields x y z (floats, z = 0) and
-/// normal_x normal_y normal_z (towards free space) are for viewing. The other fields are for loadSegmentsPcd():
-/// position[2] (the same point in doubles), normal_variance, covariance[3] (offset, offset and angle, angle), weight,
-/// last_seen, chain (number, from 0) and closed (of the chain). See Segment and SegmentMap.
+/// The file is an organised cloud. Each row is one segment and has two points, its start and its end. The fields x y z
+/// (floats, z = 0) and normal_x normal_y normal_z (towards free space) are for viewing. The other fields are for
+/// loadSegmentsPcd():
+/// - position[2]: x and y in doubles
+/// - normal_variance, weight, last_seen: see Segment
+/// - covariance[3]: variance of the offset, covariance of offset and angle, variance of the angle
+/// - chain: number of the chain, from 0
+/// - closed: 1 if the chain is closed, 0 if not
+///
 /// Throws FileError if the file cannot be written, and std::invalid_argument if the map is not valid or a coordinate
 /// does not fit a float.
 GAUSSMAP_API void saveSegmentsPcd(const std::filesystem::path& path, const SegmentMap& map);
 
 /// Reads a map of segments from a file of saveSegmentsPcd(), with bit-identical values. Throws FileError if the file is
-/// not a map of segments or a value is not possible.
+/// not a map of segments, or if a value is not finite or impossible, for example a negative variance.
 GAUSSMAP_API SegmentMap loadSegmentsPcd(const std::filesystem::path& path);
 
-/// Returns true if a PCD file has the fields of saveSegmentsPcd(). Throws FileError if it is not a PCD file.
+/// Returns true if a PCD file has the fields normal_variance and chain, like a file of saveSegmentsPcd(). Throws
+/// FileError if it is not a PCD file.
 GAUSSMAP_API bool isSegmentPcd(const std::filesystem::path& path);
 
 /// Writes a map of segments to a GeoJSON file: a FeatureCollection with one LineString per segment.

@@ -17,20 +17,21 @@ namespace gaussmap {
 /// The application id of a .gmap file ("gmap"), stored as PRAGMA application_id.
 ///
 /// A .gmap file is an SQLite database with the tables `metadata` (name, value) and `tiles` (scale, x, y, z, cells,
-/// gaussians, data). A tile is the block of cells of one scale whose keys share floor(key / span). The span is the
-/// smallest power of the ratio that is at least 32. `data` is a zstd frame with its own checksum; it holds the cells as
-/// columns.
+/// gaussians, data). A tile is a block of cells of one scale, with `span` cells along each side. It holds the cells
+/// with the same value of floor(key / span), which is x, y, z of the tile. The span is the smallest power of the ratio
+/// that is at least 32. `data` is a zstd frame with its own checksum. It stores the cells as columns: one number of all
+/// cells after the other.
 inline constexpr std::int32_t kMapFileId = 0x676D6170;  // "gmap"
 /// The version of the schema of a .gmap file, stored as PRAGMA user_version.
 inline constexpr int kMapFileVersion = 1;
 
-/// Free text that is stored with the map, by name: for example how the map was made and where it is.
+/// Free text that is stored with the map, by name: for example how the map was made and which place it shows.
 using MapMetadata = std::map<std::string, std::string>;
 
 /// How exactly a file stores the map.
 enum class Precision {
-  Exact,    ///< all bits
-  Finished  ///< a final map, see finish()
+  Exact,    ///< all bits of the map are kept
+  Finished  ///< the numbers are rounded: a final map, see finish()
 };
 
 /// Name of the metadata entry that states the precision of a final map.
@@ -61,12 +62,13 @@ GAUSSMAP_API std::uintmax_t savedSize(const GaussianMap<D>& map, const MapMetada
 /// Returns the final form of a map: it takes about 10 bytes per Gaussian on disk, but accepts no more scans.
 ///
 /// The sums of points are dropped, and the numbers are rounded:
-/// - A mean changes by at most 1/16 standard deviation along each axis (for fixed other coordinates).
+/// - Along each axis, a mean changes by at most 1/16 of the standard deviation along this axis. This is the standard
+///   deviation if the other coordinates are fixed.
 /// - The standard deviation in any direction changes by at most 5 %, and covariances stay positive definite.
 /// - A weight changes by at most 1/32 of its value (weights up to 32 are exact), log-odds by at most 1/32.
 ///
-/// The standard deviation of a Gaussian is nowhere below the noise floor. Scales finer than `finest_scale` are left
-/// empty. For `finest_scale` = 0, the result is what load() returns for a file saved with Precision::Finished.
+/// After the rounding, a standard deviation can be up to 5 % below the noise floor. Scales finer than `finest_scale`
+/// are left empty. For `finest_scale` = 0, the result is what load() returns for a file saved with Precision::Finished.
 /// Throws std::out_of_range if the map does not have the scale, and std::domain_error if a covariance is not positive
 /// definite or a weight is not positive.
 template <int D>
@@ -99,12 +101,12 @@ GAUSSMAP_API MapFileSize mapFileSize(const std::filesystem::path& path);
 
 /// Name of the metadata entry with the history: a JSON array with one object per step, in the order of the steps.
 inline constexpr const char* kHistoryEntry = "history";
-/// Name of the metadata entry with the error curves, as JSON:
+/// Name of the metadata entry with the error curves, as JSON. n is a number of Gaussians, m stands for a distance [m]:
 /// `[{"scale": s, "points": [{"gaussians": n, "q99": m, "q95": m, "mean": m}, ...]}, ...]`.
 inline constexpr const char* kCurvesEntry = "error_curves";
 
-/// Returns the history step of a refinement as a JSON object: method, budget, and all options that differ from the
-/// defaults.
+/// Returns the history step of a refinement as a JSON object: the method, the budget, the options that change the map
+/// and differ from their defaults, and the seed if the method is RefineMethod::Insert.
 ///
 /// The members of `details`, another JSON object such as `{"command": "refine"}`, are added and replace members of the
 /// same name. Throws std::invalid_argument if `details` is not a JSON object.
@@ -131,8 +133,8 @@ template <int D>
 GAUSSMAP_API std::uintmax_t savedSize(const RefineResult<D>& result, MapMetadata metadata = {},
                                       const SaveOptions& options = {});
 
-/// Returns the budget of a map file of at most `bytes` bytes, including curves and this metadata. It measures with
-/// savedSize().
+/// Returns a budget that limits a map file to `bytes` bytes. The file is written with these options and this metadata,
+/// and with the error curves. Its size is computed with savedSize().
 GAUSSMAP_API MaxBytes maxFileBytes(std::uintmax_t bytes, const MapMetadata& metadata = {},
                                    const SaveOptions& options = {});
 

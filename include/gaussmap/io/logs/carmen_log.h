@@ -19,7 +19,7 @@ struct CarmenLog {
     std::size_t line = 0;  ///< line number, from 1
     std::string what;      ///< description of the problem
   };
-  std::vector<LaserScan> scans;  ///< in the order of the file; the pose is that of the laser, taken as exact
+  std::vector<LaserScan> scans;  ///< in the order of the file; the pose of the laser has no covariance
   std::vector<Fault> faults;     ///< the first 1000, in the order of the file
   std::size_t more_faults = 0;   ///< number of further faults
 };
@@ -33,8 +33,10 @@ struct CarmenLog {
 ///                 m remissions[m] x y heading ...
 ///
 /// FLASER does not give the bearings. They follow from n as in CARMEN, for a SICK laser with a field of view of 180
-/// degrees (100 degrees for 400 or 401 beams). The first beam is half of that to the right. The step is 180 / n degrees
-/// for 180 and 360 beams, 180 / (n - 1) for other numbers. A SICK writes ranges of 80 m and more for "no return".
+/// degrees (100 degrees for 400 or 401 beams). The first beam points to the right, half the field of view from straight
+/// ahead. The step is the field of view divided by n for 180, 360 and 400 beams, and divided by n - 1 for other
+/// numbers. Without a return, a SICK writes a range of about 81.8 m. LaserScan::max_range is therefore 80 m for such
+/// lasers.
 ///
 /// Damaged lines are skipped and listed in CarmenLog::faults. If a gzip file is truncated or damaged, all whole lines
 /// before the damage are kept. Throws FileError if the file cannot be read or holds no usable scan.

@@ -24,7 +24,7 @@ GAUSSMAP_API TriangleMesh readPly(const std::filesystem::path& path);
 
 /// The type of the coordinates in a PLY file.
 enum class PlyPrecision {
-  Float,  ///< for any viewer; resolves 4 mm at 65 km from the origin
+  Float,  ///< for any viewer; rounds to steps of 4 mm at 65 km from the origin
   Double  ///< exact
 };
 

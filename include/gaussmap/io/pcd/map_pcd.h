@@ -26,14 +26,14 @@ struct GaussianRecord {
 
 /// The Gaussians of a map as records.
 struct GAUSSMAP_API GaussianRecords {
-  std::vector<GaussianRecord> records;  ///< in any order
-  /// Offset to add to the means [m]. Zero, unless floats would lose a thousandth of a finest cell far from the origin.
-  /// A multiple of 1024 m, so a float holds it exactly. Written as the VIEWPOINT of the file.
+  std::vector<GaussianRecord> records;  ///< one per Gaussian, in any order
+  /// Offset to add to the means [m]. It is zero if floats resolve a thousandth of a finest cell everywhere in the map.
+  /// Otherwise its coordinates are multiples of 1024 m, which a float holds exactly. The file stores it as VIEWPOINT.
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
 };
 
-/// Converts the Gaussians of all scales (coarsest first), or of one scale, to records in key order. Throws
-/// std::out_of_range if the map does not have the scale.
+/// Converts the Gaussians of all scales, or of one scale, to records. The coarsest scale is first, and each scale keeps
+/// its order. Throws std::out_of_range if the map does not have the scale.
 GAUSSMAP_API GaussianRecords toRecords(const GaussianMap<3>& map, std::optional<int> scale = std::nullopt);
 
 /// Converts records to a map.
@@ -69,7 +69,8 @@ GAUSSMAP_API GaussianMap<3> loadPcd(const std::filesystem::path& path);
 /// Returns true if a file begins like an SQLite database, as a .gmap file does. Returns false for any other file and
 /// for a missing file.
 GAUSSMAP_API bool isGmap(const std::filesystem::path& path);
-/// Returns true if a file is a .gmap file or a cloud of Gaussians.
+/// Returns true if isGmap() is true, or if the file is a PCD file with the field `covariance`, as clouds of Gaussians
+/// have it. The rest of the file is not checked.
 GAUSSMAP_API bool isMap(const std::filesystem::path& path);
 /// Reads a map from a .gmap file or from a cloud of Gaussians, detected by the first bytes of the file. If `metadata`
 /// is given, it receives the metadata of a .gmap file. Throws like load() and loadPcd().

@@ -21,8 +21,8 @@ struct PcdField {
   std::size_t size = 4;    ///< bytes per element
   char type = 'F';         ///< I, U or F
   std::size_t count = 1;   ///< elements per point
-  std::size_t offset = 0;  ///< of the first element in a record of DATA binary [bytes]
-  std::size_t column = 0;  ///< of the first element in a line of DATA ascii
+  std::size_t offset = 0;  ///< place of the first element in a record of DATA binary [bytes]
+  std::size_t column = 0;  ///< place of the first element in a line of DATA ascii, from 0
 };
 
 /// The encoding of the points in a PCD file: DATA ascii, binary or binary_compressed.
@@ -36,7 +36,7 @@ struct GAUSSMAP_API PcdHeader {
   std::size_t points = 0;        ///< width * height
   Pose viewpoint;                ///< the sensor's pose as written; the quaternion is not checked, see poseFault()
   bool has_viewpoint = false;    ///< false: the file has no VIEWPOINT, and `viewpoint` is the identity
-  PcdEncoding encoding = PcdEncoding::Ascii;  ///< of the data
+  PcdEncoding encoding = PcdEncoding::Ascii;  ///< encoding of the points
   std::size_t record_size = 0;                ///< bytes per point in DATA binary
   std::size_t columns = 0;                    ///< numbers per line in DATA ascii
   std::size_t data_offset = 0;                ///< bytes before the data
@@ -57,7 +57,8 @@ struct PcdColumn {
 ///
 /// No file can make the reader crash, hang, or use more memory than a small multiple of the file's size. Opening reads
 /// the header and checks it against the size of the file, but reads no points. Thousands of scans can therefore be open
-/// at the same time. If a file is truncated while it is open, reading it can raise SIGBUS; see requireWhole().
+/// at the same time. The file must not be truncated while it is open: reading can then raise the signal SIGBUS or
+/// return zeros; see requireWhole().
 class GAUSSMAP_API PcdReader {
  public:
   /// Opens a file. Throws FileError if the file is not usable; the message gives the line of the header or the byte of
@@ -67,7 +68,8 @@ class GAUSSMAP_API PcdReader {
   PcdReader(PcdReader&&) noexcept;
   PcdReader& operator=(PcdReader&&) noexcept;
 
-  /// Returns another reader of the same open file. It parses or decompresses its points itself.
+  /// Returns another reader of the same open file. The points that this reader keeps in memory are not copied: the new
+  /// reader parses or decompresses the file again when it needs them.
   PcdReader sameFile() const;
 
   /// Returns the path of the file.
@@ -83,14 +85,15 @@ class GAUSSMAP_API PcdReader {
   /// not less than size(). The first call parses an ascii file or decompresses a compressed one; the reader then keeps
   /// x, y and z in memory. Thread-safe. Throws FileError if the data are damaged.
   void read(std::size_t first, PointBlock<3>& block) const;
-  /// Throws FileError if the file was truncated after it was opened: some points are then zeros. Call this function
-  /// after the last read(). The functions below check it themselves.
+  /// Throws FileError if the file was truncated after it was opened. Points of earlier calls of read() can then be
+  /// zeros. Call this function after the last read(). columns(), column() and records() call it themselves.
   void requireWhole() const;
 
   /// Returns the selected columns, size() numbers each. Integers of 8 bytes beyond 2^53 are rounded.
   ///
   /// Each call reads the file once and keeps nothing, so request all columns in one call. Thread-safe. Throws FileError
-  /// if a field or an element is missing, if it is not a number of 1, 2, 4 or 8 bytes, or if the data are damaged.
+  /// if a field or an element is missing, if the type of a field is not one of PCD (see checkPcdFields()), or if the
+  /// data are damaged.
   std::vector<std::vector<double>> columns(const std::vector<PcdColumn>& wanted) const;
   /// Returns one column, size() numbers. It works like columns().
   std::vector<double> column(const std::string& field, std::size_t element = 0) const;
@@ -102,9 +105,9 @@ class GAUSSMAP_API PcdReader {
   /// a field of an ascii file has an unknown type.
   std::vector<char> records() const;
 
-  /// Returns a hash that distinguishes clouds, from the number of points and bytes sampled all over the data. The cost
-  /// does not depend on the size of the file. Copies of a file have the same hash; the same cloud in another encoding
-  /// has a different one.
+  /// Returns a hash by which different clouds can be distinguished. It is computed from the number of points and from
+  /// blocks of bytes at about 16 places of the data. The cost does not depend on the size of the file. Copies of a file
+  /// have the same hash; the same cloud in another encoding has a different one.
   std::uint64_t fingerprint() const;
 
  private:

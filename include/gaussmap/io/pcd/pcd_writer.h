@@ -35,9 +35,13 @@ PcdOutput pcdOutput(std::string name, const T* data, std::size_t count = 1, std:
   return {std::move(name), type, sizeof(T), count, data, stride};
 }
 
-/// Throws std::invalid_argument if a PCD file cannot have these fields: a name is missing, contains blanks or occurs
-/// twice, a type and size do not exist, or a count is 0. The message gives the field. The addresses of the values are
-/// not checked.
+/// Throws std::invalid_argument if a PCD file cannot have these fields. The message gives the field. The cases are:
+/// - There are no fields.
+/// - A name is not one word of printable ASCII characters, or it occurs twice.
+/// - PCD does not have the type and size of a field (see PcdOutput::size).
+/// - A count is 0.
+///
+/// The addresses of the values are not checked.
 GAUSSMAP_API void checkPcdFields(const std::vector<PcdOutput>& fields);
 
 /// Writes a binary PCD file (version 0.7) with any fields: one row of points, or rows of `width` points if `width` is
@@ -45,13 +49,14 @@ GAUSSMAP_API void checkPcdFields(const std::vector<PcdOutput>& fields);
 ///
 /// The write is atomic, and the same input gives the same bytes. An empty cloud is written as well, although PCL does
 /// not read it. Throws std::invalid_argument like checkPcdFields(), and also if a field has no data, the pose has a
-/// fault, or the last row is not full. Throws FileError if the file cannot be written.
+/// fault, the last row is not full, or there are more than 2^32 - 1 points. Throws FileError if the file cannot be
+/// written.
 GAUSSMAP_API void writePcd(const std::filesystem::path& path, std::size_t points, const std::vector<PcdOutput>& fields,
                            const std::optional<Pose>& viewpoint = std::nullopt, std::size_t width = 0);
 
 /// The type of the coordinates in a PCD file.
 enum class PcdPrecision {
-  Float,  ///< F4: for any reader; resolves 4 mm at 65 km from the origin, 1 m at 10,000 km
+  Float,  ///< F4: for any reader; rounds to steps of 4 mm at 65 km from the origin, 1 m at 10,000 km
   Double  ///< F8: exact; PCL's own point types do not read it
 };
 

@@ -17,48 +17,51 @@
 
 namespace gaussmap {
 
-/// Options of the test which cells a scan hits and which cells its beams pass through.
+/// Options for finding the cells that a scan hits and the cells that its beams pass through.
 struct GAUSSMAP_API ScanEvidenceOptions {
   /// Points farther from the sensor hit no cell [m]. Their beams still pass through the cells in front of them.
   double max_range = std::numeric_limits<double>::infinity();
-  std::optional<Projection> projection;     ///< of every scan; std::nullopt: determined from the points of each scan
-  std::optional<double> no_return_is_free;  ///< pixels without return are free space up to this range [m]
+  std::optional<Projection> projection;     ///< for every scan; std::nullopt: findProjection() of each scan
+  std::optional<double> no_return_is_free;  ///< see RangeImage::noReturnIsFree(); std::nullopt: not called
   VisibilityOptions visibility;             ///< when a beam passes through a cell
   int threads = 0;                          ///< 0 = all cores
 };
 
-/// The observations of the finest cells of a map by all scans together.
+/// The observations of the finest cells of a map by all scans together. For each scan, coarse cells are tested first.
+/// The finest cells below a coarse cell are skipped if no beam can pass through it (culling).
 struct ScanEvidence {
-  std::vector<Evidence> cells;    ///< per finest cell of the map
-  std::size_t cells_tested = 0;   ///< cells of the coarser scales that the culling tested, summed over the scans
-  std::size_t cells_visited = 0;  ///< finest cells that remained after the culling, summed over the scans
+  std::vector<Evidence> cells;    ///< one entry per finest cell of the map
+  std::size_t cells_tested = 0;   ///< number of tests of coarse cells, over all scans
+  std::size_t cells_visited = 0;  ///< number of tests of finest cells, over all scans
 };
 
 /// Decides which cells held an object that has moved. Lengths are in metres, so they do not change with the resolution.
 struct MovingCellOptions {
   OccupancyOptions occupancy;  ///< log-odds per hit and per miss
-  double min_points = 10.0;    ///< connected groups of freed cells with fewer points are noise and are kept
-  double link = 0.2;           ///< cells within this distance are connected [m], at least one cell
+  double min_points = 10.0;    ///< connected freed cells with fewer points together are noise and not moving
+  double link = 0.2;           ///< cells up to this far apart are connected [m]; adjacent cells always are
   double reach = 0.5;          ///< maximum distance that an object extends beyond its freed cells [m]
 };
 
-/// Separates the points of an object from those of a floor or wall in the same cell. The scans that did not see the
-/// object in the cell define the surface of the floor or wall.
+/// Separates the points of an object from those of a floor or wall in the same cell. The scans before and after the
+/// object was in the cell define the surface of the floor or wall.
 struct SharedCellOptions {
   double reach = 0.6;      ///< cells within this distance can contribute points to the surface [m]
-  double flatness = 0.04;  ///< maximum standard deviation across the surface [m]; above, there is no surface
-  double noise = 0.01;     ///< points within this or three standard deviations belong to the surface [m]
+  double flatness = 0.04;  ///< maximum standard deviation of the points across a surface [m]
+  /// Maximum distance from the surface of a point that belongs to it [m]. Three standard deviations across the surface
+  /// are used instead if they are larger.
+  double noise = 0.01;
 };
 
 /// Options of MovingPoints.
 struct MovingPointOptions {
   double resolution = 0.2;       ///< side of the finest cells [m]
-  ScanEvidenceOptions evidence;  ///< for step evidence
-  MovingCellOptions cells;       ///< for steps free and grow
-  SharedCellOptions shared;      ///< for step share
+  ScanEvidenceOptions evidence;  ///< options of the step `evidence`
+  MovingCellOptions cells;       ///< options of the steps `free` and `grow`
+  SharedCellOptions shared;      ///< options of the step `share`
 };
 
-/// A pass of MovingPoints over all scans.
+/// One of the three times that MovingPoints reads all scans.
 enum class MovingPointStep {
   Counting,  ///< builds the map
   Looking,   ///< finds the cells that each scan hits and passes through
@@ -69,15 +72,18 @@ enum class MovingPointStep {
 ///
 /// It works in five steps:
 /// - map: builds the map of all scans.
-/// - evidence: finds which finest cells each scan hit and which it passed through. A scan with a point in a cell hits
+/// - evidence: finds which finest cells each scan hits and which it passes through. A scan with a point in a cell hits
 ///   the cell, whatever its other beams do. Any other scan passes through the cell if its beams pass through the mean
-///   of the cell's points (see visibilityOf()). This is Yguel 2009, sec. 4.1 and 4.2, with one sample per cell.
+///   of the cell's points (see visibilityOf()). This is the method of Yguel 2009, sec. 4.1 and 4.2, but it tests only
+///   this one place per cell.
 /// - free: frees a cell if at least one scan hit it, but its log-odds over all scans are below 0. Connected groups of
-///   freed cells with few points are noise of sensor or pose and are kept.
-/// - grow: adds the cells near a freed cell that were hit only while the freed cell was hit. They belong to the same
-///   object, even if no beam has passed through them since (lower parts, far side).
-/// - share: in cells that an object shares with the surface below or beside it, only the points off the surface are
-///   moving.
+///   freed cells with few points are noise of the sensor or the poses. They are not freed.
+/// - grow: adds cells near a freed cell. All scans that hit such a cell lie between the first and the last scan that
+///   hit the freed cell. The cell then belongs to the same object, even if no beam has passed through it since, for
+///   example on the far side of the object.
+/// - share: fits a surface to the static points in and around each cell of an object. While the object was there, only
+///   the points off this surface are moving. This holds for the cells of the object and the cells adjacent to them. If
+///   there is no flat surface, all points in the cells of the object are moving.
 class GAUSSMAP_API MovingPoints {
  public:
   /// Runs all steps and reads all scans three times.
