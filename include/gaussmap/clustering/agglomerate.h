@@ -17,8 +17,8 @@ enum class MergeCost {
   /// constant factor. The cost is negative for two clusters at the same place, because one ellipsoid replaces two.
   Volume,
   /// `((w_1 + w_2) ln det S_12 - w_1 ln det S_1 - w_2 ln det S_2) / 2` [nat], with w = weights. This is an upper bound
-  /// of the log-likelihood that the merge loses (Runnalls 2007). With this cost, the weights of the Gaussians also
-  /// weight the moment match. With Volume, the areas given to agglomerate() weight it.
+  /// of the log-likelihood that the merge loses (Runnalls 2007). With this cost, the moment match is weighted by
+  /// the weights of the Gaussians. With Volume, it is weighted by the areas given to agglomerate().
   Runnalls
 };
 
@@ -38,7 +38,7 @@ struct AgglomerateOptions {
 struct Dendrogram {
   /// One merge of two nodes.
   struct Merge {
-    std::uint32_t first = 0;   ///< the node that contains the input Gaussian of smaller index
+    std::uint32_t first = 0;   ///< the node whose smallest input index is lower
     std::uint32_t second = 0;  ///< the other node
     double cost = 0.0;         ///< see MergeCost; costs do not always increase from merge to merge
   };

@@ -82,13 +82,13 @@ class GAUSSMAP_API KLKMeans {
 /// The moved centre is one of the two closest centres or a random one. The loop ends when a round does not reduce the
 /// distortion, or after KLKMeansOptions::max_swaps rounds.
 ///
-/// - `current_centres` are the k - 1 current cluster centres. If there are none, the result is one cluster.
+/// - `current_centres` are the k - 1 current cluster centres; this defines k. If there are none, the result is one
+///   cluster.
 /// - The result has at most k clusters. It can have fewer, for example if input Gaussians are equal.
 /// - The distortion never exceeds that of the current centres.
 /// - If k >= n, each Gaussian becomes its own cluster, with distortion 0.
 ///
-/// Here k is the number of current centres + 1; KLKMeansOptions::k is not used. Input and errors are the same as for
-/// KLKMeans.
+/// KLKMeansOptions::k is not used. Input and errors are the same as for KLKMeans.
 template <int D>
 GAUSSMAP_API KLClustering<D> insertCluster(const std::vector<Gaussian<D>>& data,
                                            const std::vector<Gaussian<D>>& current_centres,

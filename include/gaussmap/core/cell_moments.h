@@ -25,10 +25,9 @@ struct GAUSSMAP_API CellMoments {
   static constexpr std::int64_t kMaxPoints = (std::int64_t{1} << 33) - 1;  ///< maximum number of points per cell
   using Offset = std::array<std::int32_t, D>;                              ///< point minus the cell's centre [steps]
 
-  std::int64_t count = 0;             ///< number of points
-  std::array<std::int64_t, D> sum{};  ///< sum of offsets [steps]
-  std::array<std::int64_t, kProducts>
-      product{};  ///< sum of products [steps^2], upper triangle by rows: xx xy xz yy yz zz
+  std::int64_t count = 0;                         ///< number of points
+  std::array<std::int64_t, D> sum{};              ///< sum of offsets [steps]
+  std::array<std::int64_t, kProducts> product{};  ///< sum of products [steps^2], in the order xx xy xz yy yz zz
 
   /// Adds one point. Throws std::length_error if the cell is full.
   void add(const Offset& offset) {

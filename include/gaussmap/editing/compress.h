@@ -24,17 +24,15 @@ struct CompressOptions {
 ///
 /// The reference is the means of the finest Gaussians of the given map. A cell is good enough if both criteria hold:
 /// - Each of its Gaussians gets `samples` samples inside the cell. At least 95 % of them lie within max_error [m] of
-/// the
-///   nearest reference mean. This mean can be in another cell. A Gaussian for which no sample is found fails.
+///   the nearest reference mean. This mean can be in another cell. A Gaussian for which no sample is found fails.
 /// - Every reference mean below the cell lies within max_error of the 95 % ellipsoid of one of its Gaussians. This
 ///   ellipsoid contains 95 % of the probability mass; inside it the distance is 0. An ellipsoid that is too wide passes
 ///   this criterion but fails the first one.
 ///
 /// The result therefore has two properties:
 /// - At least 95 % of the samples of each Gaussian in a coarse leaf cell lie within max_error of a reference mean. This
-///   is exact for the samples that were tested. sampleMap() draws them from the given map with `samples` = 0,
-///   `at_least` = CompressOptions::samples, the same seed and SampleBounds::Cell. For other samples the share can
-///   differ a little.
+///   is exact for the samples that were tested. sampleMap() draws the same samples with `samples` = 0, `at_least` =
+///   CompressOptions::samples, the same seed and SampleBounds::Cell. For other samples the share can differ a little.
 /// - Every reference mean lies within max_error of the 95 % ellipsoid of a Gaussian that now represents it.
 ///
 /// Adjacent reference means are about one finest cell apart. A max_error below half the side of a finest cell therefore

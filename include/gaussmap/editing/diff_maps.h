@@ -54,8 +54,8 @@ struct GAUSSMAP_API MapDiff {
 ///    Gaussians of a pair are Changed.
 /// 3. A Gaussian without a partner is Gone (first map) or New (second map) if p = share^n is below DiffOptions::level.
 ///    Here n is the number of its points. Of the points in the cells that both maps have, `share` is the fraction that
-///    belongs to the map of the Gaussian. If both maps saw the place, p is the probability that all n points come from
-///    this map by chance.
+///    belongs to the map of the Gaussian. If the points are distributed in the same way in both maps, p is the
+///    probability that all n points of a place come from this map by chance.
 ///
 /// The function does not know where the sensors measured: a place that the second map did not observe is also Gone. At
 /// scales with several Gaussians per cell, the same surface can be clustered differently and is then reported as

@@ -16,8 +16,8 @@ struct SimplifyOptions {
 
 /// Reduces the number of Gaussians of a map to a budget, Yguel 2009 sec. 5.4.
 ///
-/// The function merges pairs of clusters of the same cell, until the budget is met. It always merges the pair with the
-/// smallest cost of the whole scale. The finest scale is simplified too if its cells hold several Gaussians. The finer
+/// The function merges pairs of clusters of the same cell, until the budget is met. The cheapest merges of the
+/// whole scale come first. The finest scale is simplified too if its cells hold several Gaussians. The finer
 /// scales of a cell can be missing, so the function also accepts compressed maps, final maps and maps of one scale. The
 /// children of merged clusters become children of the union. Coarse clusters thus stay the moment matches of their
 /// children. Every cell keeps at least one Gaussian. A finest scale with exact moments does not change.
@@ -28,10 +28,10 @@ struct SimplifyOptions {
 /// RefineResult::not_reached. A scale with one Gaussian per cell is never listed. The result has no error curves.
 ///
 /// Throws std::invalid_argument in these cases:
-/// - The budget is out of range; the message names the option.
+/// - The budget or an option is out of range; the message names it.
 /// - MaxGaussians: the map does not have a listed scale, or a limit is below the number of cells of the scale.
 /// - MaxBytes: a map with one Gaussian per cell exceeds the limit; the message gives the bytes needed.
-/// - MaxBytes or MaxError, and D = 2.
+/// - The budget is MaxBytes or MaxError, and D = 2.
 template <int D>
 GAUSSMAP_API RefineResult<D> simplify(GaussianMap<D> map, const Budget& budget, const SimplifyOptions& options = {});
 

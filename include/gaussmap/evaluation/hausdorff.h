@@ -73,7 +73,7 @@ struct MapHausdorff {
   HausdorffResult within_two_sigma;  ///< result for the samples within 2 sigma of their means; count = 0: none
   std::size_t gaussians = 0;         ///< number of compared Gaussians: those of the scale, or the leaves
   std::size_t samples = 0;           ///< number of samples of the map
-  std::size_t unplaced = 0;  ///< number of samples for which no place inside the bounds was found, see sampleMap()
+  std::size_t unplaced = 0;          ///< number of samples for which no place was found, see sampleMap()
 };
 
 /// A reference for comparisons with maps and clouds. It is sorted once and serves any number of comparisons. It is a

@@ -32,13 +32,13 @@ struct IndexRange {
 template <int D>
 struct MapScale {
   std::vector<CellKey<D>> keys;  ///< n cells
-  /// n + 1 indices: cell i has the children first_child[i] to first_child[i + 1] - 1 of the finer scale. Empty at scale
-  /// 0.
+  /// n + 1 indices: the children of cell i are cells first_child[i] to first_child[i + 1] - 1 of the finer scale. The
+  /// array is empty at scale 0.
   std::vector<std::uint32_t> first_child;
   /// n exact moments, or empty. Only scale 0 can have moments. Its Gaussians are then computed from them.
   std::vector<CellMoments<D>> moments;
-  /// n + 1 indices: cell i holds the Gaussians first_gaussian[i] to first_gaussian[i + 1] - 1. If it is empty, cell i
-  /// holds only Gaussian i.
+  /// n + 1 indices: cell i holds the Gaussians first_gaussian[i] to first_gaussian[i + 1] - 1. If the array is empty,
+  /// cell i holds only Gaussian i.
   std::vector<std::uint32_t> first_gaussian;
   std::vector<Gaussian<D>> gaussians;  ///< means relative to the cell's centre; empty if there are moments
   std::vector<std::uint32_t> parent;   ///< per Gaussian: its cluster of the coarser scale; empty at the coarsest
@@ -119,8 +119,8 @@ class GAUSSMAP_API GaussianMap {
   /// Returns true if the Gaussians have occupancy values from range images, as in a map of OnlineMapper. Either all
   /// scales have them or none.
   bool hasOccupancy() const { return !scale(scales() - 1).log_odds.empty(); }
-  /// Returns the log-odds of occupancy of Gaussian `index` of scale `s`: whether the surface is still there. Returns
-  /// kMaxOccupancy if the map has no occupancy.
+  /// Returns the log-odds that the surface at Gaussian `index` of scale `s` still exists, or kMaxOccupancy if the map
+  /// has no occupancy.
   float logOdds(std::size_t index, int s) const { return hasOccupancy() ? scale(s).log_odds[index] : kMaxOccupancy; }
 
   /// Returns the parent of Gaussian `index` of scale `s`: a cluster of scale `s` + 1 (paper, Fig. 6). `s` must be below

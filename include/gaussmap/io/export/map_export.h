@@ -56,9 +56,8 @@ GAUSSMAP_API std::size_t savePly(const std::filesystem::path& path, const Gaussi
 /// Gaussian, in doubles, as raw appended data. The point data are:
 /// - covariance: 9 numbers [m^2]
 /// - deviation: 9 numbers [m], the symmetric square root of the covariance. To draw ellipsoids of two standard
-/// deviations
-///   in ParaView, apply the filter "Tensor Glyph" to it. Use a sphere of radius 0.5 and a scale factor of 4, and do not
-///   limit the size of the glyphs.
+///   deviations in ParaView, apply the filter "Tensor Glyph" to it. Use a sphere of radius 0.5 and a scale factor of 4,
+///   and do not limit the size of the glyphs.
 /// - normal, weight, log_odds, occupancy (probability), scale, cell_side [m]
 /// - parent: index of the point of the parent Gaussian; -1 if the parent is not in the file
 ///

@@ -62,8 +62,8 @@ GAUSSMAP_API std::uintmax_t savedSize(const GaussianMap<D>& map, const MapMetada
 /// Returns the final form of a map: it takes about 10 bytes per Gaussian on disk, but accepts no more scans.
 ///
 /// The sums of points are dropped, and the numbers are rounded:
-/// - Along each axis, a mean changes by at most 1/16 of the standard deviation along this axis. This is the standard
-///   deviation if the other coordinates are fixed.
+/// - Along each axis, a mean changes by at most 1/16 of the standard deviation that the Gaussian has along this axis if
+///   its other coordinates are fixed.
 /// - The standard deviation in any direction changes by at most 5 %, and covariances stay positive definite.
 /// - A weight changes by at most 1/32 of its value (weights up to 32 are exact), log-odds by at most 1/32.
 ///
