@@ -23,6 +23,7 @@ highlight_language = "none"
 
 # Names of other libraries.
 nitpick_ignore_regex = [
+    ("cpp:identifier", r"Pose(Covariance|Direction)::Zero"),  # of Eigen
     ("cpp:identifier", r"(std|Eigen|pcl)(::.*)?|gaussmap"),
     ("cpp:identifier", r"(Vector|Matrix)<.*>::.*|Rotation::.*"),  # members of Eigen's types
     ("cpp:identifier", r"Base(::.*)?|PointCloud\w*Ptr"),  # the class of PCL that a plug-in derives from
