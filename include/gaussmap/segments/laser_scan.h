@@ -3,10 +3,12 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 #include "gaussmap/core/scans.h"
 
 #include "gaussmap/core/gaussian.h"
+#include "gaussmap/map/grid.h"
 #include "gaussmap/version.h"
 
 namespace gaussmap {
@@ -49,6 +51,8 @@ struct GAUSSMAP_API PlanarScanOptions {
   double z_min = 0.0, z_max = 0.0;  ///< maximum height of a slice in the map frame [m], >= z_min
   double step = 0.5;                ///< width of a beam of a slice [degrees], 0.01 to 180
   double max_range = std::numeric_limits<double>::infinity();  ///< points farther from the sensor are no returns [m]
+  double min_range = 0.0;                                      ///< points nearer to the sensor are no returns [m]
+  std::optional<Box<3>> crop = std::nullopt;  ///< points outside this box are no returns [m, map frame]
 };
 
 /// Converts a cloud to a sweep of a planar laser. The points are projected along z of the map frame. Bearings are

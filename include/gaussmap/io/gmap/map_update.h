@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -24,12 +25,19 @@ struct UpdateOptions {
   int threads = 0;                              ///< 0 = all cores
 };
 
+/// Fewer new points than this in a cell do not show that a scan is added again, see MapUpdate.
+inline constexpr std::int64_t kRepeatPoints = 3;
+
 /// The result of updateMap().
 struct MapUpdate {
   /// Number of cells of the whole map after the update, per scale, finest first.
   std::vector<std::size_t> cells, gaussians;  ///< number of Gaussians of the whole map, per scale, finest first
   std::size_t tiles_written = 0;              ///< number of changed tiles; the others keep their bytes
   std::size_t tiles = 0;                      ///< number of tiles in the file
+  std::size_t cells_added_to = 0;             ///< finest cells with new points
+  /// Finest cells with at least kRepeatPoints new points each, and those of them that held exactly these points before:
+  /// their exact sums are equal, or a whole multiple. More than a few such cells mean that a scan is added again.
+  std::size_t cells_compared = 0, cells_repeated = 0;
 };
 
 /// Adds points to a map file. It reads only the tiles below the coarsest cells with new points and writes only the
