@@ -26,7 +26,10 @@ namespace {
 const Help kCleanHelp = {
     "Remove the points of moving objects from scans", "gaussmap clean scans/ -o clean/ --removed removed.pcd",
     R"(Finds cells that some scans hit and other scans see through. At least two scans of the same place are needed. The
-scans keep all their fields and their VIEWPOINT. In organised clouds, removed points become NaN.)"};
+scans keep all their fields and their VIEWPOINT. In organised clouds, removed points become NaN.
+
+--merged and --removed write x y z as doubles (F 8) if floats would round them by a thousandth of --resolution.
+Points that --max-range, --min-range or --crop drop are not tested, but stay in the outputs.)"};
 
 struct CleanCommand {
   ScanInput input;

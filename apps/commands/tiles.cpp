@@ -25,7 +25,8 @@ const Help kTilesHelp = {
     "gaussmap tiles street.gmap -o tiles && gaussmap tiles tiles -o back.gmap",
     R"(Writes tile_X_Y.pcd for every square of --size metres, and pointcloud_map_metadata.yaml with the lower corner of
 each tile: the layout of Autoware's dynamic map loading. x y z are the means of the finest scale, and the other
-fields are those of gaussmap export.
+fields are those of gaussmap export. Far from the origin, where floats would lose a thousandth of a cell, x y z are
+doubles. Autoware reads only floats: move the map to an origin near it with gaussmap transform, or use --floats.
 
 If the input is a directory of tiles, the command writes a map. If the tiles contain only the finest scale, the map
 has one Gaussian per coarse cell (gaussmap refine adds more). Tiles contain no moments, so the map accepts no more

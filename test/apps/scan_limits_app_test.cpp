@@ -129,7 +129,7 @@ TEST_F(ScanLimitsApp, GzippedScansAreReadAndCleanedToPlainOnes) {
 TEST_F(ScanLimitsApp, InvalidViewpointsDoNotMatterInTheMapFrame) {
   const std::string head = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 1\nHEIGHT 1\nVIEWPOINT ";
   for (const std::string viewpoint : {"0 0 0 0 0 0 0", "1 2 3 2 0 0 0", "nan 0 0 1 0 0 0"}) {
-    directory_.write("v.pcd", head + viewpoint + "\nPOINTS 1\nDATA ascii\n1 2 3\n");
+    directory_.write("v.pcd", head + viewpoint + "\nPOINTS 1\nDATA ascii\n4 5 6\n");
     const Outcome said = runApp({"pcd2map", own("v.pcd"), "-o", own("v.gmap"), "--frame", "map", "--force"});
     EXPECT_EQ(said.code, 0) << said.err;
     EXPECT_NE(said.err.find("warning: " + own("v.pcd")), std::string::npos) << said.err;

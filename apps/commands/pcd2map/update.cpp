@@ -101,9 +101,17 @@ void warnOfFarScans(const PcdScans& scans, const std::string& map) {
 }
 
 void warnOfRepeats(const MapUpdate& update, const std::string& map) {
-  constexpr double kRepeated = 0.01;
-  if (static_cast<double>(update.cells_repeated) <= kRepeated * static_cast<double>(update.cells_compared)) return;
-  warn(std::to_string(update.cells_repeated) + " of " + std::to_string(update.cells_compared) +
+  // Of a scan that is added again, only the cells that no other scan hit show it. Single points of different scans can
+  // be equal by chance, because many sensors round their ranges.
+  constexpr std::size_t kFewest = 3;
+  constexpr double kDenseShare = 0.001, kShare = 0.3;
+  const auto exceeds = [](std::size_t some, std::size_t all, double share) {
+    return some >= kFewest && static_cast<double>(some) > share * static_cast<double>(all);
+  };
+  if (!exceeds(update.dense_cells_repeated, update.dense_cells, kDenseShare) &&
+      !exceeds(update.cells_repeated, update.cells_added_to, kShare))
+    return;
+  warn(std::to_string(update.cells_repeated) + " of " + std::to_string(update.cells_added_to) +
        " cells with new points held exactly these points already, so a scan is already in " + map +
        " and its points now count twice; if that is not wanted, build the map again without it");
 }

@@ -212,9 +212,8 @@ GaussianMap<3> loadTiles(const fs::path& folder) {
   GaussianRecords all;
   for (const std::string& file : index.files) {
     if (PcdReader(folder / file).header().find("covariance") == nullptr)
-      throw FileError(folder / file,
-                      "holds points, not the Gaussians of a map: build a map of such tiles with gaussmap pcd2map " +
-                          folder.string() + " --frame map -o MAP");
+      throw FileError(folder / file, "holds points, not Gaussians; build a map from such tiles with gaussmap pcd2map " +
+                                         folder.string() + " --frame map -o MAP");
     GaussianRecords tile = loadRecordsPcd(folder / file);
     for (GaussianRecord& record : tile.records)
       for (std::size_t axis = 0; axis < 3; ++axis) record.mean[axis] += tile.origin(static_cast<Eigen::Index>(axis));

@@ -167,10 +167,12 @@ class Updater {
     update.cells_added_to = added_.size();
     for (std::size_t i = 0; i < added_.size(); ++i) {
       const CellMoments<D>& fresh = added_[i].moments;
-      if (fresh.count < kRepeatPoints) continue;
-      ++update.cells_compared;
       const auto known = before.find(added_[i].key, 0);
-      if (known) update.cells_repeated += isMultiple<D>(before.scale(0).moments[*known], fresh);
+      const bool is_repeated = known && isMultiple<D>(before.scale(0).moments[*known], fresh),
+                 is_dense = fresh.count >= kDensePoints;
+      update.cells_repeated += is_repeated;
+      update.dense_cells += is_dense;
+      update.dense_cells_repeated += is_dense && is_repeated;
     }
   }
 

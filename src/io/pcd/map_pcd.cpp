@@ -77,9 +77,8 @@ void savePcd(const std::filesystem::path& path, const GaussianMap<3>& map, const
 GaussianRecords loadRecordsPcd(const std::filesystem::path& path) {
   const PcdReader reader(path);
   if (reader.header().find("covariance") == nullptr)
-    throw FileError(path,
-                    "holds points, not the Gaussians of a map (it has no field 'covariance'); build a map from it with "
-                    "gaussmap pcd2map");
+    throw FileError(
+        path, "holds points, not Gaussians: it has no field 'covariance'; build a map from it with gaussmap pcd2map");
   std::vector<PcdColumn> wanted = {{"x"},         {"y"},     {"z"},      {"weight"}, {"occupancy"},
                                    {"cell_side"}, {"scale"}, {"cell_x"}, {"cell_y"}, {"cell_z"}};
   for (std::size_t element = 0; element < 6; ++element) wanted.push_back({"covariance", element});

@@ -38,10 +38,13 @@ class AsciiParser {
     throw FileError(path_, "line " + std::to_string(line_) + ": " + what);
   }
 
-  // Returns false at the end of the file.
+  // Skips blank lines and comments. Returns false at the end of the file.
   bool skipBlankLines() {
-    while (place_ != end_ && (isBlank(*place_) || *place_ == '\n')) line_ += *place_++ == '\n';
-    return place_ != end_;
+    while (true) {
+      while (place_ != end_ && (isBlank(*place_) || *place_ == '\n')) line_ += *place_++ == '\n';
+      if (place_ == end_ || *place_ != '#') return place_ != end_;
+      while (!atLineEnd()) ++place_;
+    }
   }
 
   void skipBlanks() {

@@ -77,6 +77,8 @@ class HeaderParser {
       const Keyword keyword = keywordOf(words.front(), number);
       if (has(keyword)) fail(number, "a second line " + std::string(kNames[keyword]));
       words.erase(words.begin());
+      words.erase(std::find_if(words.begin(), words.end(), [](std::string_view word) { return word.front() == '#'; }),
+                  words.end());  // a comment
       lines_[keyword] = {number, std::move(words)};
       if (keyword != kData) continue;
       header_.data_offset = static_cast<std::size_t>(rest.data() - bytes_.data());
@@ -123,10 +125,11 @@ class HeaderParser {
     if (!has(kVersion)) return;
     const Line& line = lines_[kVersion];
     std::string_view word = line.words.size() == 1 ? line.words.front() : "";
-    if (!word.empty() && upper(word.front()) == 'V') word.remove_prefix(1);  // some programs write v0.7
+    if (word.substr(0, 4) == "PCD_") word.remove_prefix(4);
+    if (!word.empty() && upper(word.front()) == 'V') word.remove_prefix(1);  // some programs write v0.7 or PCD_V7
     double version = 0.0;
     if (parseNumber(word, version))
-      for (const double known : {0.5, 0.6, 0.7})
+      for (const double known : {0.5, 0.6, 0.7, 5.0, 6.0, 7.0})
         if (std::abs(version - known) < 1e-9) return;
     fail(line.number,
          "VERSION is " + quote(line.words.empty() ? "" : line.words.front()) + ", expected 0.5, 0.6 or 0.7");
@@ -157,7 +160,8 @@ class HeaderParser {
     requireOnePerField(kType);
     for (std::size_t i = 0; i < header_.fields.size(); ++i) {
       const std::string_view word = lines_[kType].words[i];
-      const char type = upper(word.front());  // PCL reads only the first letter too, for example of float
+      char type = upper(word.front());  // PCL reads only the first letter too, for example of float
+      if (type == 'B' && header_.fields[i].size == 1) type = 'U';  // PCL's bool
       if (type != 'I' && type != 'U' && type != 'F')
         fail(lines_[kType].number, "the TYPE of " + nameOf(i) + " is " + quote(word) + ", not I, U or F");
       header_.fields[i].type = type;

@@ -91,7 +91,7 @@ TEST_F(BadPcdFiles, FieldsThatAMapCannotUseAreRefused) {
   expectHeaderRefused("FIELDS x y z", "FIELDS x y w", {"line 3", "'z'"});
   expectHeaderRefused("FIELDS x y z", "FIELDS X Y W", {"line 3", "'z'"});
   expectHeaderRefused("FIELDS x y z", "FIELDS X y z", {"line 3", "'x'"});
-  expectHeaderRefused("FIELDS x y z", "FIELDS X Y Y", {"line 3", "'z'"});
+  expectHeaderRefused("FIELDS x y z", "FIELDS X Y Y", {"line 3", "'y' occurs twice"});
   expectHeaderRefused("FIELDS x y z", "FIELDS x y y", {"line 3", "'y' occurs twice"});
   expectHeaderRefused("FIELDS x y z", "FIELDS", {"line 4", "0 FIELDS"});
   expectHeaderRefused("FIELDS x y z\n", "", {"no line FIELDS"});

@@ -48,6 +48,19 @@ TEST_F(ForeignHeaders, EncodingsCanHaveCapitals) {
 TEST_F(ForeignHeaders, VersionsCanStartWithALetter) {
   EXPECT_EQ(readWith("VERSION 0.7", "VERSION v.7"), two_);
   EXPECT_EQ(readWith("VERSION 0.7", "VERSION V0.6"), two_);
+  EXPECT_EQ(readWith("VERSION 0.7", "VERSION PCD_V7"), two_);
+}
+
+TEST_F(ForeignHeaders, CommentsCanFollowALineOrStandBetweenThePoints) {
+  EXPECT_EQ(readWith("POINTS 2", "POINTS 2 # two of them"), two_);
+  EXPECT_EQ(readWith("DATA ascii", "DATA ascii # text"), two_);
+  EXPECT_EQ(readWith("", "", "# first\n1 2 3\n  # second\n4 5 6\n# end"), two_);
+}
+
+TEST_F(ForeignHeaders, TruthValuesAreNumbers) {
+  const std::string text =
+      "FIELDS x y z ok\nSIZE 4 4 4 1\nTYPE F F F B\nCOUNT 1 1 1 1\nPOINTS 2\nDATA ascii\n1 2 3 1\n4 5 6 0\n";
+  EXPECT_EQ(PcdReader(directory_.write("scan.pcd", text)).column("ok"), (std::vector<double>{1, 0}));
 }
 
 TEST_F(ForeignHeaders, CoordinatesCanHaveCapitals) {
@@ -63,7 +76,7 @@ TEST_F(ForeignHeaders, FieldsOfCountZeroHoldNothing) {
   const std::string fields = "FIELDS x _ y z pad\nSIZE 4 1 4 4 8\nTYPE F U F F F\nCOUNT 1 0 1 1 0\nPOINTS 1\nDATA ";
   const std::string bytes = bytesOf(1.0f) + bytesOf(2.0f) + bytesOf(3.0f);
   for (const std::string& body :
-       {"ascii\n1 2 3\n", "binary\n" + bytes, "binary_compressed\n" + compressedBody(bytes)}) {
+       {std::string("ascii\n1 2 3\n"), "binary\n" + bytes, "binary_compressed\n" + compressedBody(bytes)}) {
     const PcdReader reader(directory_.write("scan.pcd", fields + body));
     EXPECT_EQ(readAll(reader), (Axes{{1}, {2}, {3}}));
     EXPECT_EQ(reader.header().fields.size(), 3u);

@@ -52,7 +52,8 @@ TEST_F(GzippedPcd, AreRefusedIfTheyAreDamaged) {
   EXPECT_EQ(complaintOf(good), "");
   EXPECT_NE(complaintOf(good.substr(0, good.size() / 2)).find("cut off"), std::string::npos);
   EXPECT_NE(complaintOf(good + "more").find("follow the gzip data"), std::string::npos);
-  EXPECT_NE(complaintOf(gzipped(xyzHeader(3, "ascii") + "1 2 3\n4 5 6\n")).find("2 of 3 points"), std::string::npos);
+  EXPECT_NE(complaintOf(gzipped(xyzHeader(3, "ascii") + "1 2 3\n4 5 6\n")).find("3 points of 3 numbers"),
+            std::string::npos);
   EXPECT_NE(complaintOf(gzipped("no header")), "");
   std::string damaged = good;
   damaged[damaged.size() / 2] = static_cast<char>(damaged[damaged.size() / 2] ^ 0x55);

@@ -25,8 +25,8 @@ struct UpdateOptions {
   int threads = 0;                              ///< 0 = all cores
 };
 
-/// Fewer new points than this in a cell do not show that a scan is added again, see MapUpdate.
-inline constexpr std::int64_t kRepeatPoints = 3;
+/// So many points of two different scans nearly never have the same exact sums in a cell, see MapUpdate.
+inline constexpr std::int64_t kDensePoints = 3;
 
 /// The result of updateMap().
 struct MapUpdate {
@@ -35,9 +35,11 @@ struct MapUpdate {
   std::size_t tiles_written = 0;              ///< number of changed tiles; the others keep their bytes
   std::size_t tiles = 0;                      ///< number of tiles in the file
   std::size_t cells_added_to = 0;             ///< finest cells with new points
-  /// Finest cells with at least kRepeatPoints new points each, and those of them that held exactly these points before:
-  /// their exact sums are equal, or a whole multiple. More than a few such cells mean that a scan is added again.
-  std::size_t cells_compared = 0, cells_repeated = 0;
+  /// Of these, the cells that held exactly the new points before: their exact sums are equal, or a whole multiple. Many
+  /// such cells mean that a scan is added again.
+  std::size_t cells_repeated = 0;
+  std::size_t dense_cells = 0;           ///< finest cells with at least kDensePoints new points each
+  std::size_t dense_cells_repeated = 0;  ///< of these, the cells that held exactly the new points before
 };
 
 /// Adds points to a map file. It reads only the tiles below the coarsest cells with new points and writes only the
