@@ -5,6 +5,7 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <utility>
 
 #include "commands/commands.h"
 #include "commands/scan_input.h"
@@ -15,6 +16,7 @@
 #include "evaluation/removal_score.h"
 #include "gaussmap/mapping/moving/moving_points.h"
 #include "io/pcd/pcd_records.h"
+#include "io/scans/scan_names.h"
 
 namespace gaussmap::app {
 using namespace detail;
@@ -24,7 +26,10 @@ namespace {
 const Help kCleanHelp = {
     "Remove the points of moving objects from scans", "gaussmap clean scans/ -o clean/ --removed removed.pcd",
     R"(Finds cells that some scans hit and other scans see through. At least two scans of the same place are needed. The
-scans keep all their fields and their VIEWPOINT. In organised clouds, removed points become NaN.)"};
+scans keep all their fields and their VIEWPOINT. In organised clouds, removed points become NaN.
+
+--merged and --removed write x y z as doubles (F 8) if floats would round them by a thousandth of --resolution.
+Points that --max-range, --min-range or --crop drop are not tested, but stay in the outputs.)"};
 
 struct CleanCommand {
   ScanInput input;
@@ -36,12 +41,16 @@ struct CleanCommand {
   bool writes() const { return !folder.empty() || !merged.empty() || !removed.empty(); }
 };
 
-/// Returns the path of each cleaned scan: FOLDER/NAME. Throws UsageError if two scans have the same file name.
+/// Returns the path of each cleaned scan: FOLDER/NAME, or FOLDER/000000/cloud.pcd if the scans are called so. Throws
+/// UsageError if two scans have the same name.
 std::vector<std::filesystem::path> outputsFor(const PcdScans& scans, const std::string& folder) {
   std::map<std::filesystem::path, std::filesystem::path> taken;
-  std::vector<std::filesystem::path> outputs;
-  for (const PcdScan& scan : scans.files()) {
-    const std::filesystem::path name = scan.path.filename();
+  std::vector<std::filesystem::path> outputs, paths;
+  for (const PcdScan& scan : scans.files()) paths.push_back(scan.path);
+  const std::vector<std::filesystem::path> copies = scanCopies(paths);
+  for (std::size_t i = 0; i < copies.size(); ++i) {
+    const PcdScan& scan = scans.files()[i];
+    const std::filesystem::path& name = copies[i];
     const auto [entry, is_new] = taken.emplace(name, scan.path);
     if (!is_new)
       throw UsageError(scan.path.string() + " and " + entry->second.string() + " would both become " +
@@ -60,14 +69,22 @@ std::vector<std::filesystem::path> checkedOutputs(const CleanCommand& command, c
   std::vector<std::filesystem::path> outputs;
   if (!command.folder.empty()) outputs = outputsFor(scans, command.folder);
   checkOutputs({command.merged, command.removed}, command.force, inputs, outputs);
+  refuseOtherKinds(command.merged, "a PCD file", {".pcd"});
+  refuseOtherKinds(command.removed, "a PCD file", {".pcd"});
+  if (endingOf(command.folder) == ".pcd")
+    throw UsageError("-o " + command.folder +
+                     ": the cleaned scans are files of a directory, whose name must not end in " +
+                     ".pcd; use --merged for one file");
   if (command.folder.empty()) return {};
   makeFolder(command.folder);
+  for (const std::filesystem::path& output : outputs) makeFolder(output.parent_path());
   for (const std::filesystem::path& output : outputs) checkOutput({output.string(), command.force}, inputs);
   return outputs;
 }
 
-void mergeInto(PcdRecords& all, PcdRecords part, const PcdScan& scan, ScanFrame frame) {
-  if (frame == ScanFrame::Sensor) moveToMap(part, scan.pose);
+/// `precision` [m]: if floats round coordinates of the map frame by more, they become doubles.
+void mergeInto(PcdRecords& all, PcdRecords part, const PcdScan& scan, ScanFrame frame, double precision) {
+  if (frame == ScanFrame::Sensor) moveToMap(part, scan.pose, precision);
   part.width = 0;
   part.viewpoint = Pose();
   if (all.fields.empty()) {
@@ -75,7 +92,7 @@ void mergeInto(PcdRecords& all, PcdRecords part, const PcdScan& scan, ScanFrame 
     return;
   }
   try {
-    append(all, part);
+    append(all, std::move(part));
   } catch (const std::invalid_argument&) {
     throw FileError(scan.path, "has other fields than the scans before, so they cannot be merged into one cloud");
   }
@@ -116,6 +133,8 @@ Cleaned writeCleaned(const CleanCommand& command, const PcdScans& scans, const M
                      const std::vector<std::filesystem::path>& outputs) {
   Cleaned cleaned;
   PcdRecords merged, removed;
+  const double precision = 1e-3 * command.options.resolution;
+  bool floats = true;
   for (std::size_t i = 0; i < scans.size(); ++i) {
     const PcdReader reader = scans.reader(i);
     std::vector<bool> is_moving = moving.inScan(i), is_still = is_moving;
@@ -136,9 +155,16 @@ Cleaned writeCleaned(const CleanCommand& command, const PcdScans& scans, const M
       return kept;
     };
     if (!outputs.empty()) writePcd(outputs[i], part(is_still, true));
-    if (!command.merged.empty()) mergeInto(merged, part(is_still, false), scans.files()[i], scans.frame());
-    if (!command.removed.empty()) mergeInto(removed, part(is_moving, false), scans.files()[i], scans.frame());
+    floats &= records.fields.empty() || hasFloatCoordinates(records);
+    if (!command.merged.empty()) mergeInto(merged, part(is_still, false), scans.files()[i], scans.frame(), precision);
+    if (!command.removed.empty())
+      mergeInto(removed, part(is_moving, false), scans.files()[i], scans.frame(), precision);
   }
+  for (const auto& [path, cloud] : {std::pair(&command.merged, &merged), std::pair(&command.removed, &removed)})
+    if (!path->empty() && floats && cloud->size() > 0 && !hasFloatCoordinates(*cloud))
+      warn(*path +
+           ": x y z are doubles (F 8), because floats would round them that far from the origin; PCL's point "
+           "types read only floats");
   if (!command.merged.empty()) writePcd(command.merged, merged);
   if (!command.removed.empty()) writePcd(command.removed, removed);
   return cleaned;
@@ -151,6 +177,8 @@ void run(CleanCommand command) {
   ScanEvidenceOptions& evidence = command.options.evidence;
   const AccumulateOptions input = accumulateOptions(command.input, command.options.resolution, evidence.threads);
   evidence.max_range = input.max_range;
+  evidence.min_range = input.min_range;
+  evidence.crop = input.crop;
   const auto files = std::make_shared<const PcdScans>(openScans(command.input));
   const PcdScans& scans = *files;
   checkScans(command, scans);
@@ -159,6 +187,7 @@ void run(CleanCommand command) {
   const MovingPoints moving(files, command.options, [&](MovingPointStep, std::size_t done) {
     bar.show({done, scans.size(), 0, 0});
   });
+  warnOfCoordinates(scans, command.options.resolution);
   const Cleaned cleaned = writeCleaned(command, scans, moving, outputs);
 
   const double seconds = now() - start;

@@ -2,12 +2,12 @@
 // gaussmap crop MAP -o OUT --box|--polygon: cuts a part out of a map.
 #include "gaussmap/editing/crop.h"
 
-#include <limits>
 #include <memory>
 #include <stdexcept>
 
 #include "commands/commands.h"
 #include "commands/map_task.h"
+#include "common/box.h"
 #include "common/command.h"
 
 namespace gaussmap::app {
@@ -25,18 +25,6 @@ const Help kCropHelp = {
 parts that do not overlap can be merged to the whole map again. A coarse cluster on the border is recomputed from
 the Gaussians inside.)"};
 
-Box<3> boxOf(const std::vector<double>& n) {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  if (n.size() != 4 && n.size() != 6)
-    throw UsageError("--box: " + std::to_string(n.size()) +
-                     " numbers found, expected x0 y0 x1 y1 or x0 y0 z0 x1 y1 z1");
-  Box<3> box =
-      n.size() == 4 ? Box<3>{{n[0], n[1], -kFar}, {n[2], n[3], kFar}} : Box<3>{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
-  if (!(box.low.array() < box.high.array()).all())
-    throw UsageError("--box: every coordinate of the first corner must be below that of the second corner");
-  return box;
-}
-
 Polygon polygonOf(const std::vector<double>& n) {
   if (n.size() % 2 != 0 || n.size() < 6)
     throw UsageError("--polygon: " + std::to_string(n.size()) +
@@ -48,7 +36,7 @@ Polygon polygonOf(const std::vector<double>& n) {
 
 std::function<bool(const Vector<3>&)> region(const CropCommand& command) {
   if (!command.box.empty())
-    return [box = boxOf(command.box), outside = command.outside](const Vector<3>& p) {
+    return [box = boxOf("--box", command.box), outside = command.outside](const Vector<3>& p) {
       return isInBox<3>(box, p) != outside;
     };
   return [polygon = polygonOf(command.polygon), outside = command.outside](const Vector<3>& p) {

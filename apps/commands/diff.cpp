@@ -4,11 +4,13 @@
 #include <memory>
 
 #include "commands/commands.h"
+#include "common/box.h"
 #include "common/command.h"
 #include "common/json.h"
 #include "common/report.h"
 #include "gaussmap/editing/diff_maps.h"
 #include "gaussmap/io/pcd/map_pcd.h"
+#include "gaussmap/map/queries.h"
 #include "io/export/diff_pcd.h"
 
 namespace gaussmap::app {
@@ -29,6 +31,21 @@ x y z covariance[6] weight p_value label. Labels: 0 the same, or too few points 
 Places that the sensors of the second map never observed count as gone too. At refined scales, clusters can differ
 because the same surface was divided in another way, so compare the finest scale.)"};
 
+/// Warns if the maps share no cell, or nearly none, because then everything is new or gone.
+void warnOfOverlap(const DiffCommand& options, const GaussianMap<3>& first, const GaussianMap<3>& second) {
+  constexpr double kFewest = 0.01;
+  const int s = options.diff.scale;
+  const auto &few = first.cellCount(s) < second.cellCount(s) ? first : second, &many = &few == &first ? second : first;
+  const auto extent = extentOf<3>(first), other = extentOf<3>(second);
+  if (!extent || !other) return;
+  std::size_t shared = 0;
+  for (const CellKey<3>& key : few.scale(s).keys) shared += many.find(key, s).has_value();
+  if (static_cast<double>(shared) >= kFewest * static_cast<double>(few.cellCount(s)) && shared > 0) return;
+  warn(options.first + " and " + options.second +
+       (shared == 0 ? " do not overlap" : " hardly overlap: " + std::to_string(shared) + " common cells") + " (" +
+       textOf(*extent) + " and " + textOf(*other) + "); are both in the same frame? See gaussmap transform");
+}
+
 void run(const DiffCommand& options) {
   if (!options.output.empty()) {
     requireExtension(options.output, ".pcd");
@@ -39,6 +56,7 @@ void run(const DiffCommand& options) {
   const int s = options.diff.scale;
   checkScale("--scale", s, first.scales(), options.first);
   checkScale("--scale", s, second.scales(), options.second);
+  if (first.grid().side(s) == second.grid().side(s)) warnOfOverlap(options, first, second);
   const MapDiff diff = diffMaps<3>(first, second, options.diff);
   if (!options.output.empty()) detail::writeDiffPcd(options.output, first, second, diff, s);
   const std::size_t none = diff.count(Change::None), fresh = diff.count(Change::New), gone = diff.count(Change::Gone),

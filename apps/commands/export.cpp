@@ -73,7 +73,7 @@ std::size_t write(const ExportCommand& options, const GaussianMap<3>& map, const
 }
 
 void run(const ExportCommand& options) {
-  const std::string ending = std::filesystem::path(options.output.path).extension().string();
+  const std::string ending = endingOf(options.output.path);
   if (ending != ".pcd" && ending != ".ply" && ending != ".vtp" && ending != ".csv")
     throw UsageError(options.output.path + ": the name must end in .pcd, .ply, .vtp or .csv");
   checkPlyOptions(options, ending);

@@ -3,7 +3,6 @@
 // mesh or another map), or the likelihood of points under a map.
 #include "commands/hausdorff/hausdorff.h"
 
-#include <algorithm>
 #include <map>
 #include <memory>
 
@@ -39,10 +38,7 @@ const std::map<std::string, SampleBounds> kBounds = {{"members", SampleBounds::M
                                                      {"cell", SampleBounds::Cell}};
 
 bool isMesh(const std::string& path) {
-  std::string ending = std::filesystem::path(path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? c + 32 : c; });
-  return ending == ".ply";
+  return endingOf(path) == ".ply";
 }
 
 ReferenceKind kindOf(const std::vector<std::string>& paths) {

@@ -192,6 +192,7 @@ void print(const MapInfo& info, const std::string& path) {
 
 void run(const InfoCommand& command) {
   if (!command.plot.path.empty()) checkOutput(command.plot, {command.map});
+  refuseOtherKinds(command.plot.path, "a picture", {".svg"});
   const MapInfo info = readInfo(command.map);
   if (!command.plot.path.empty()) {
     if (info.curves.empty())

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "commands/commands.h"
+#include "commands/dropped_fields.h"
 #include "commands/pcd2map/scan_report.h"
 #include "common/command.h"
 #include "common/report.h"
@@ -39,12 +40,15 @@ void run(const Pcd2mapOptions& options) {
   checkOnline(options.online, options.budget, options.output, inputs);
   checkMemory(options);
 
+  accumulateOptions(options.input, options.map.resolution, 0);  // checks the options before files are read
   const PcdScans scans = openScans(options.input);
+  noteDroppedFields(scans);
   const AccumulateOptions reading =
       accumulateOptions(options.input, options.map.resolution, options.budget.refine.threads);
   const WrittenMap written = !options.max_memory.empty() ? buildWithinMemory(options, scans, reading)
                              : options.online.on         ? buildOnline(options, scans, reading, task)
                                                          : buildInMemory(options, scans, reading, task);
+  warnOfCoordinates(scans, options.map.resolution);
   MapReport report;
   std::vector<std::size_t> gaussians;
   for (const Json& scale : written.scales) gaussians.push_back(scale["gaussians"].get<std::size_t>());

@@ -5,8 +5,10 @@
 #include <memory>
 
 #include "commands/commands.h"
+#include "commands/scan_input.h"
 #include "common/command.h"
 #include "common/json.h"
+#include "core/accept_points.h"
 #include "gaussmap/io/pcd/map_pcd.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
 #include "gaussmap/io/scans/pcd_scans.h"
@@ -29,6 +31,7 @@ Maps can be given in place of scans. Without --guess, the search for the first m
 struct RegisterCommand {
   std::vector<std::string> inputs;  // scans or maps; the last one is the map to register with
   std::vector<double> guess;        // x y z qx qy qz qw; empty: the VIEWPOINT of the first scan; identity for a map
+  ScanInput limits;                 // only the ranges
   std::string tum;
   bool force = false;
   RegistrationOptions options;
@@ -79,9 +82,13 @@ void print(const std::filesystem::path& scan, const RegistrationResult& result) 
 }
 
 RegistrationResult registerFile(const std::filesystem::path& path, const GaussianMap<3>& map, const Pose& guess,
-                                const RegistrationOptions& options) {
-  if (isMap(path)) return registerMap(loadAny(path), map, guess, options);
-  return registerScan(PcdScans({{path, Pose()}}).read(0).points, map, guess, options);
+                                const RegisterCommand& command) {
+  if (isMap(path)) return registerMap(loadAny(path), map, guess, command.options);
+  const PcdScans scans({{path, Pose()}});
+  Scan scan = scans.read(0);
+  warnOfCoordinates(scans, map.grid().side(0));
+  detail::dropPoints(detail::limitsOf(accumulateOptions(command.limits, map.grid().side(0), 0)), scan);
+  return registerScan(scan.points, map, guess, command.options);
 }
 
 void run(const RegisterCommand& command) {
@@ -91,6 +98,7 @@ void run(const RegisterCommand& command) {
     std::vector<std::filesystem::path> inputs = scans;
     inputs.push_back(map_path);
     checkOutput({command.tum, command.force}, inputs);
+    refuseOtherKinds(command.tum, "a file of poses", {".tum", ".txt", ".csv"});
   }
   Pose guess = guessOf(command, scans.front());
   const GaussianMap<3> map = loadAny(map_path);
@@ -99,7 +107,7 @@ void run(const RegisterCommand& command) {
   Json all = Json::array();
   std::vector<TimedPose> trajectory;
   for (const std::filesystem::path& path : scans) {
-    const RegistrationResult result = registerFile(path, map, guess, command.options);
+    const RegistrationResult result = registerFile(path, map, guess, command);
     if (result.fitness == 0.0)
       throw FileError(path, "no part of it lies on the map after the search; use a better --guess");
     guess = result.pose;  // for the next scan
@@ -132,9 +140,10 @@ void addRegister(CLI::App& app) {
   command
       .number("--kernel", options->options.kernel, 1e-3, 1e6, "a residual of this many standard deviations counts half")
       .rare();
+  addRangeOptions(command, options->limits);
   command.threads(options->options.threads);
   command.json(options->json);
-  command.files({"inputs"}, {".pcd", ".gmap"});
+  command.files({"inputs"}, {".pcd", ".pcd.gz", ".gmap"});
   command.files({"--tum"});
   command.onRun([options] { run(*options); });
 }

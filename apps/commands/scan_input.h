@@ -16,17 +16,25 @@ struct ScanInput {
   std::string poses;
   std::string frame = "sensor";
   double max_range = 0.0;  // 0: no limit
+  double min_range = 0.0;
+  std::vector<double> crop;  // x0 y0 x1 y1 or x0 y0 z0 x1 y1 z1 [m, map frame]; empty: no limit
 };
 /// Adds the positional argument of the paths.
 void addScanPaths(Command& command, ScanInput& input);
-/// Adds --poses, --frame and --max-range.
+/// Adds --poses, --frame, --max-range, --min-range and --crop.
 void addScanOptions(Command& command, ScanInput& input);
+/// Adds --max-range and --min-range.
+void addRangeOptions(Command& command, ScanInput& input);
 
 /// Calls findScans() and prints its warnings on stderr.
 PcdScans openScans(const ScanInput& input);
+/// Prints warnings about the coordinates that were read, see PcdScans::coordinateWarnings(). Call it after reading.
+void warnOfCoordinates(const PcdScans& scans, double resolution);
+/// Throws UsageError for ranges or a box that hold no point.
 AccumulateOptions accumulateOptions(const ScanInput& input, double resolution, int threads);
-/// Returns all points of the scans [m, map frame]. Throws std::runtime_error if no point is usable.
-std::vector<Vector<3>> readPoints(const ScanInput& input, int threads);
+/// Returns all points of the scans [m, map frame]. Throws std::runtime_error if no point is usable. Warns of
+/// coordinates that are too coarse for cells of `resolution` [m].
+std::vector<Vector<3>> readPoints(const ScanInput& input, int threads, double resolution = MapOptions().resolution);
 
 /// The name of the scans in messages: "scan.pcd", or "scan.pcd and 4 more".
 std::string nameOf(const Scans& scans);

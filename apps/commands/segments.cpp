@@ -34,6 +34,7 @@ void checkFiles(const SegmentsCommand& command, std::vector<std::filesystem::pat
   std::vector<std::string> outputs = command.outputs;
   outputs.push_back(command.stats);
   checkOutputs(outputs, command.force, inputs);
+  refuseOtherKinds(command.stats, "a table", {".csv", ".txt"});
 }
 
 /// Throws UsageError for options that do not apply if the input is a finished map.

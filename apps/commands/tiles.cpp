@@ -6,6 +6,7 @@
 #include "commands/commands.h"
 #include "commands/map_task.h"
 #include "common/command.h"
+#include "common/report.h"
 #include "gaussmap/io/export/map_tiles.h"
 #include "gaussmap/io/pcd/map_pcd.h"
 
@@ -16,6 +17,7 @@ struct TilesCommand : MapTaskOptions {
   int size = TilesOptions().size;
   int scale = 0;
   bool all_scales = false;
+  bool floats = false;
 };
 
 const Help kTilesHelp = {
@@ -23,19 +25,35 @@ const Help kTilesHelp = {
     "gaussmap tiles street.gmap -o tiles && gaussmap tiles tiles -o back.gmap",
     R"(Writes tile_X_Y.pcd for every square of --size metres, and pointcloud_map_metadata.yaml with the lower corner of
 each tile: the layout of Autoware's dynamic map loading. x y z are the means of the finest scale, and the other
-fields are those of gaussmap export.
+fields are those of gaussmap export. Far from the origin, where floats would lose a thousandth of a cell, x y z are
+doubles. Autoware reads only floats: move the map to an origin near it with gaussmap transform, or use --floats.
 
 If the input is a directory of tiles, the command writes a map. If the tiles contain only the finest scale, the map
 has one Gaussian per coarse cell (gaussmap refine adds more). Tiles contain no moments, so the map accepts no more
 scans.)"};
 
+void warnOfPrecision(const std::string& folder, const WrittenTiles& tiles, const GaussianMap<3>& map) {
+  const std::string rounded = formatted("%.2g m", tiles.rounding);
+  if (tiles.doubles)
+    warn(folder + ": x y z are doubles (F 8), because floats would round them by " + rounded +
+         "; Autoware and PCL's point types read only floats: move the map to an origin near it with gaussmap "
+         "transform, or use --floats");
+  else if (tiles.rounding > 1e-3 * map.grid().side(0))
+    warn(folder + ": x y z are floats, rounded by " + rounded + " (the cells have " +
+         formatted("%g m", map.grid().side(0)) + ")");
+}
+
 void toTiles(const TilesCommand& command) {
+  if (const std::string ending = endingOf(command.output.path); ending == ".gmap" || ending == ".pcd")
+    throw UsageError(command.output.path + ": tiles of a map are a directory, whose name must not end in " + ending);
   const GaussianMap<3> map = loadAny(command.map);
   checkScale("--scale", command.scale, map.scales());
   TilesOptions to;
   to.size = command.size;
   to.scale = command.all_scales ? std::nullopt : std::optional<int>(command.scale);
+  to.floats = command.floats;
   const WrittenTiles written = saveTiles(command.output.path, map, to);
+  warnOfPrecision(command.output.path, written, map);
   if (command.json)
     printJson({{"directory", command.output.path}, {"tiles", written.tiles}, {"gaussians", written.gaussians}});
   else
@@ -68,6 +86,8 @@ void addTiles(CLI::App& app) {
       .flag("--all-scales", options->all_scales,
             "write all scales; a map made of the tiles then has the same coarse scales")
       .excludes(scale);
+  command.flag("--floats", options->floats,
+               "write x y z as floats even if that rounds them (far from the origin they are doubles by default)");
   command.json(options->json);
   command.files({"map"}, {".gmap", ".pcd"});
   command.files({"--output"}, {".gmap"});

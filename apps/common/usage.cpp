@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <set>
 #include <system_error>
 
@@ -14,8 +15,25 @@ void checkScale(const std::string& option, int scale, int scales, const std::str
                      std::to_string(scales - 1));
 }
 
+std::string endingOf(const std::filesystem::path& path) {
+  std::string ending = path.extension().string();
+  for (char& c : ending) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return ending;
+}
+
 void requireExtension(const std::filesystem::path& path, const std::string& extension) {
-  if (path.extension() != extension) throw UsageError(path.string() + ": the name must end in " + extension);
+  if (endingOf(path) != extension) throw UsageError(path.string() + ": the name must end in " + extension);
+}
+
+void refuseOtherKinds(const std::filesystem::path& path, const std::string& what, const std::vector<std::string>& own) {
+  static const std::set<std::string> kinds = {
+      ".gmap", ".pcd", ".ply",     ".vtp", ".vtk", ".obj", ".stl", ".las",  ".laz",  ".e57",  ".xyz", ".pts",
+      ".bin",  ".svg", ".geojson", ".png", ".jpg", ".pdf", ".csv", ".json", ".yaml", ".yml",  ".txt", ".tum",
+      ".log",  ".bag", ".db3",     ".ot",  ".bt",  ".gz",  ".zip", ".zst",  ".html", ".mcap", ".npy", ".npz"};
+  const std::string ending = endingOf(path);
+  if (kinds.count(ending) == 0 || std::find(own.begin(), own.end(), ending) != own.end()) return;
+  throw UsageError(path.string() + ": this output is " + what + ", so its name must not end in " + ending + "; use " +
+                   own.front());
 }
 
 void checkOutput(const Output& output, const std::vector<std::filesystem::path>& inputs) {
@@ -38,9 +56,10 @@ void checkOutput(const Output& output, const std::vector<std::filesystem::path>&
 
 void checkMapOutput(const Output& output, const std::vector<std::filesystem::path>& inputs) {
   checkOutput(output, inputs);
-  if (std::filesystem::path(output.path).extension() == ".pcd")
+  if (endingOf(output.path) == ".pcd")
     throw UsageError(output.path +
                      ": the name of a map file must not end in .pcd; use .gmap (gaussmap export writes PCD files)");
+  refuseOtherKinds(output.path, "a map", {".gmap"});
 }
 
 void checkOutputs(const std::vector<std::string>& outputs, bool force, const std::vector<std::filesystem::path>& inputs,

@@ -17,8 +17,13 @@ struct UsageError : std::runtime_error {
 /// message.
 void checkScale(const std::string& option, int scale, int scales, const std::string& owner = "the map");
 
-/// Throws UsageError unless the path has this extension, such as ".pcd".
+/// Returns the extension of a file in lower case, such as ".pcd"; empty if there is none.
+std::string endingOf(const std::filesystem::path& path);
+/// Throws UsageError unless the path has this extension, such as ".pcd". Capital letters count as small ones.
 void requireExtension(const std::filesystem::path& path, const std::string& extension);
+/// Throws UsageError if the extension of an output is that of another kind of file. `own` has the extensions of its own
+/// kind, and `what` names the kind: "a table (CSV)". An empty path is skipped.
+void refuseOtherKinds(const std::filesystem::path& path, const std::string& what, const std::vector<std::string>& own);
 
 /// An output file, and whether it may replace an existing one.
 struct Output {
@@ -29,7 +34,7 @@ struct Output {
 /// Throws UsageError if the output is one of the inputs, is a directory, or exists without --force, or if its directory
 /// does not exist or is not writable. Commands call it before they start to work.
 void checkOutput(const Output& output, const std::vector<std::filesystem::path>& inputs = {});
-/// The same for a map file, whose name must not end in .pcd.
+/// The same for a map file, whose name must not have the extension of another kind of file.
 void checkMapOutput(const Output& output, const std::vector<std::filesystem::path>& inputs);
 /// The same for several outputs of one command. They must differ from each other and from those in `taken`. Empty names
 /// are skipped.

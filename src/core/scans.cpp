@@ -47,6 +47,8 @@ PointCounts& PointCounts::operator+=(const PointCounts& other) {
   non_finite += other.non_finite;
   at_sensor += other.at_sensor;
   beyond_range += other.beyond_range;
+  too_near += other.too_near;
+  outside += other.outside;
   return *this;
 }
 

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "core/accept_points.h"
-#include "core/check.h"
 #include "core/parallel.h"
 
 namespace gaussmap {
@@ -20,10 +19,6 @@ using namespace detail;
 namespace {
 
 constexpr std::size_t kBlocksPerTask = 128;  // 65,536 points
-
-void checkOptions(const AccumulateOptions& options) {
-  require(options.max_range >= 0.0, "max_range", options.max_range, "must not be negative");
-}
 
 /// Calls body(first) for every block of a scan, in parallel. The number of open scans does not exceed the number of
 /// threads.
@@ -48,7 +43,8 @@ using Partials = tbb::enumerable_thread_specific<Partial>;
 template <typename Full>
 void accumulate(const Scans& scans, const AccumulateOptions& options, Partials& partials, const Full& full,
                 const ReportProgress& progress) {
-  checkOptions(options);
+  const PointLimits limits = limitsOf(options);
+  checkLimits(limits);
   std::mutex progress_mutex;
   AccumulateProgress done{0, scans.size(), 0, 0};
   parallelFor(scans.size(), options.threads, 1, [&](std::size_t index) {
@@ -58,7 +54,7 @@ void accumulate(const Scans& scans, const AccumulateOptions& options, Partials& 
       Partial& partial = partials.local();
       PointBlock<3> block;
       reader->read(first, block);
-      partial.counts += acceptPoints(scan.pose, scans.frame(), options.max_range, block);
+      partial.counts += acceptPoints(scan.pose, scans.frame(), limits, block);
       try {
         if (partial.moments.add(block) != block.size)
           throw std::out_of_range("a point is not finite in the map frame; check the units and the pose");
@@ -119,7 +115,8 @@ PointCounts accumulateScansInParts(const Scans& scans, const AccumulateOptions& 
 }
 
 std::vector<Vector<3>> readPoints(const Scans& scans, const AccumulateOptions& options) {
-  checkOptions(options);
+  const PointLimits limits = limitsOf(options);
+  checkLimits(limits);
   std::vector<Vector<3>> points;
   for (std::size_t index = 0; index < scans.size(); ++index) {
     const ScanInfo scan = scans.info(index);
@@ -127,7 +124,7 @@ std::vector<Vector<3>> readPoints(const Scans& scans, const AccumulateOptions& o
     forBlocks(*reader, 1, [&](std::size_t first) {
       PointBlock<3> block;
       reader->read(first, block);
-      acceptPoints(scan.pose, scans.frame(), options.max_range, block);
+      acceptPoints(scan.pose, scans.frame(), limits, block);
       for (std::size_t i = 0; i < block.size; ++i)
         points.emplace_back(block.coordinate[0][i], block.coordinate[1][i], block.coordinate[2][i]);
     });

@@ -14,7 +14,8 @@ pcl::PointCloud<PointGaussian> toPointCloud(const GaussianMapOctree& map, std::o
   cloud.sensor_origin_.head<3>() = all.origin.cast<float>();
   for (const GaussianRecord& record : all.records) {
     PointGaussian point;
-    point.getVector3fMap() << record.mean[0], record.mean[1], record.mean[2];
+    for (int axis = 0; axis < 3; ++axis)
+      point.getVector3fMap()(axis) = static_cast<float>(record.mean[static_cast<std::size_t>(axis)]);
     point.data[3] = 1.0f;
     std::copy(record.covariance.begin(), record.covariance.end(), point.covariance);
     point.weight = record.weight;
@@ -33,7 +34,7 @@ GaussianMapOctree fromPointCloud(const pcl::PointCloud<PointGaussian>& cloud) {
   GaussianRecords all{{}, cloud.sensor_origin_.head<3>().cast<double>()};
   all.records.reserve(cloud.size());
   for (const PointGaussian& point : cloud) {
-    GaussianRecord record{{point.x, point.y, point.z},
+    GaussianRecord record{{double{point.x}, double{point.y}, double{point.z}},
                           {},
                           point.weight,
                           point.occupancy,

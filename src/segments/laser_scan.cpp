@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/accept_points.h"
 #include "core/check.h"
 #include "core/pi.h"
 #include "core/quantile.h"
@@ -28,6 +29,7 @@ struct Beam {
 
 void checkOptions(const PlanarScanOptions& options) {
   require(options.step >= 0.01 && options.step <= 180.0, "step", options.step, "must be 0.01 to 180 degrees");
+  checkLimits(limitsOf(options));
   if (options.slice)
     require(options.z_min <= options.z_max, "z_max", options.z_max,
             "must be at least z_min, " + numberText(options.z_min) + " m");
@@ -43,6 +45,7 @@ FromAbove lookFromAbove(const Scan& scan, const Pose2& pose, const PlanarScanOpt
   FromAbove view;
   view.beams.reserve(scan.points.size());
   const Eigen::Matrix3d rotation = scan.pose.rotation.toRotationMatrix();
+  const PointLimits limits = limitsOf(options);
   for (const Eigen::Vector3d& point : scan.points) {
     view.beams.push_back({kNoReturn, kNoReturn});
     if (!isReturn(point)) continue;
@@ -50,10 +53,13 @@ FromAbove lookFromAbove(const Scan& scan, const Pose2& pose, const PlanarScanOpt
     const double height = way.z() + scan.pose.translation.z(), range = std::hypot(way.x(), way.y());
     if (options.slice && !(height >= options.z_min && height <= options.z_max)) continue;
     if (!(range > 0.0)) continue;
-    view.lowest = std::min(view.lowest, height);
-    view.highest = std::max(view.highest, height);
+    const bool is_left_out = range < options.min_range || !limits.isInside(way + scan.pose.translation);
+    if (!is_left_out) {
+      view.lowest = std::min(view.lowest, height);
+      view.highest = std::max(view.highest, height);
+    }
     view.beams.back() = {std::remainder(std::atan2(way.y(), way.x()) - pose.heading, 2.0 * kPi),
-                         range <= options.max_range ? range : kNoReturn};
+                         !is_left_out && range <= options.max_range ? range : kNoReturn};
   }
   return view;
 }

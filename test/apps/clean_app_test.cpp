@@ -162,9 +162,10 @@ TEST_F(CleanApp, ReplacesOutputsOnlyWhenTold) {
 }
 
 TEST_F(CleanApp, RefusesOutputsThatWouldMeet) {
-  std::filesystem::create_directories(own("other"));
+  std::filesystem::create_directories(own("other/scans"));
   std::filesystem::copy_file(scan(1), own("other/scan0.pcd"));
-  expectUsageError("would both become", {"clean", scan(0), own("other/scan0.pcd"), "-o", own("c")});
+  std::filesystem::copy_file(scan(1), own("other/scans/scan0.pcd"));
+  expectUsageError("would both become", {"clean", scan(0), own("other/scans/scan0.pcd"), "-o", own("c")});
   succeed({"clean", scan(0), own("other/scan0.pcd"), "--merged", own("m.pcd")});
   EXPECT_GT(pointsIn(own("m.pcd")), pointsIn(scan(0)));
   expectUsageError("another output", {"clean", scans(), "--merged", own("a.pcd"), "--removed", own("./a.pcd")});

@@ -42,7 +42,7 @@ void printHead() {
 }
 
 std::vector<Vector<3>> readSubject(const HausdorffCommand& command) {
-  ScanInput cloud = command.reference;  // copies --frame and --max-range
+  ScanInput cloud = command.reference;  // copies --frame, the ranges and --crop
   cloud.paths = {command.subject};
   cloud.poses.clear();
   return readPoints(cloud, command.samples.threads);
@@ -70,9 +70,9 @@ void compareMap(const HausdorffCommand& command, ReferenceKind kind) {
     other = loadAny(command.onlyReference());
   else if (kind == ReferenceKind::Mesh)
     reference = readMesh(command);
-  else
-    reference = Reference(readPoints(command.reference, command.samples.threads));
   const GaussianMap<3> map = loadAny(command.subject);
+  if (!other && !reference)
+    reference = Reference(readPoints(command.reference, command.samples.threads, map.grid().side(0)));
   std::vector<const GaussianMap<3>*> maps = {&map};
   if (other) maps.push_back(&*other);
   const std::vector<Level> levels = chosenLevels(command, maps);

@@ -8,6 +8,7 @@
 #include "common/progress_bar.h"
 #include "common/report.h"
 #include "io/pcd/removed_pcd.h"
+#include "io/scans/scan_names.h"
 
 namespace gaussmap::app {
 using namespace detail;
@@ -25,10 +26,10 @@ class StatisticsTable {
     text_ << '\n';
   }
 
-  void add(std::size_t scan, const std::filesystem::path& path, const OnlineStatistics& s) {
-    text_ << scan << ',' << csvQuoted(path.filename().string()) << ',' << s.points.accepted << ',' << s.cells_touched
-          << ',' << s.cells_new << ',' << s.cells_tested << ',' << s.cells_visited << ',' << s.added << ',' << s.deleted
-          << ',' << s.update_time << ',' << s.image_time << ',' << s.look_back_time << ',' << s.occupancy_time << ','
+  void add(std::size_t scan, const std::string& name, const OnlineStatistics& s) {
+    text_ << scan << ',' << csvQuoted(name) << ',' << s.points.accepted << ',' << s.cells_touched << ',' << s.cells_new
+          << ',' << s.cells_tested << ',' << s.cells_visited << ',' << s.added << ',' << s.deleted << ','
+          << s.update_time << ',' << s.image_time << ',' << s.look_back_time << ',' << s.occupancy_time << ','
           << s.forget_time << ',' << s.refine_time;
     for (std::size_t scale = 1; scale < scales_; ++scale) {
       text_ << ',';
@@ -44,6 +45,12 @@ class StatisticsTable {
   std::ostringstream text_;
 };
 
+std::vector<std::string> namesOf(const Scans& scans) {
+  std::vector<std::filesystem::path> paths;
+  for (std::size_t i = 0; i < scans.size(); ++i) paths.emplace_back(scans.info(i).name);
+  return scanNames(paths);
+}
+
 }  // namespace
 
 WrittenMap buildOnline(const Pcd2mapOptions& options, const Scans& scans, const AccumulateOptions& reading,
@@ -56,6 +63,7 @@ WrittenMap buildOnline(const Pcd2mapOptions& options, const Scans& scans, const 
 
   PointCounts counts;
   std::size_t deleted = 0;  // clusters of all scales
+  const std::vector<std::string> names = namesOf(scans);
   StatisticsTable table(options.map.scales);
   ProgressBar bar;
   for (std::size_t i = 0; i < scans.size(); ++i) {
@@ -67,7 +75,7 @@ WrittenMap buildOnline(const Pcd2mapOptions& options, const Scans& scans, const 
       throw std::out_of_range(scan.name + ": " + error.what());
     }
     counts += statistics.points;
-    table.add(i, scan.name, statistics);
+    table.add(i, names[i], statistics);
     deleted += statistics.deleted;
     bar.show({i + 1, scans.size(), counts.accepted, 0});
   }

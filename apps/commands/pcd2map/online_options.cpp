@@ -53,6 +53,8 @@ void checkOnline(const OnlineInput& input, const BudgetInput& budget, const Outp
   if (budget.cost) throw UsageError("--cost: not with --online");
   if (budget.refine.seed != RefineOptions().seed) throw UsageError("--seed: not with --online");
   checkOutputs({input.stats, input.removed}, map.force, inputs, {map.path});
+  refuseOtherKinds(input.stats, "a table", {".csv", ".txt"});
+  refuseOtherKinds(input.removed, "a PCD file", {".pcd"});
 }
 
 OnlineOptions onlineOptions(const OnlineInput& input, const MapOptions& map, const AccumulateOptions& reading,
@@ -60,6 +62,8 @@ OnlineOptions onlineOptions(const OnlineInput& input, const MapOptions& map, con
   OnlineOptions options = input.options;
   options.map = map;
   options.max_range = reading.max_range;
+  options.min_range = reading.min_range;
+  options.crop = reading.crop;
   options.threads = budget.refine.threads;
   options.budget = budget.budget;
   options.method = budget.method == "insert" ? RefineMethod::Insert : RefineMethod::Agglomerate;

@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <iostream>
+#include <limits>
 #include <optional>
 
+#include "commands/dropped_fields.h"
 #include "commands/pcd2map/pcd2map.h"
 #include "commands/pcd2map/scan_report.h"
+#include "common/box.h"
 #include "common/progress_bar.h"
 #include "common/report.h"
+#include "gaussmap/io/gmap/map_reader.h"
 #include "gaussmap/io/gmap/map_update.h"
+#include "gaussmap/map/queries.h"
+#include "map/neighbour_keys.h"
 
 namespace gaussmap::app {
 namespace {
@@ -62,6 +69,53 @@ void report(const Pcd2mapOptions& options, const Scans& scans, const PointCounts
             << " tiles written, " << humanBytes(bytes) << ", " << secondsText(seconds) << " s\n";
 }
 
+/// Returns the names of scans that have no point in or beside a coarsest cell of the map.
+std::vector<std::string> farScans(const PcdScans& scans, const GaussianMap<3>& coarse) {
+  constexpr double kFarthest = 2147483000.0;  // cells: beyond, a point has no key
+  const int s = coarse.scales() - 1;
+  std::vector<std::string> far;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    const std::vector<Eigen::Vector3d> points = scans.sample(i);
+    const bool is_near = std::any_of(points.begin(), points.end(), [&](const Eigen::Vector3d& point) {
+      if (!(point.cwiseAbs().maxCoeff() < kFarthest * coarse.grid().side(s))) return false;
+      bool found = false;
+      detail::forKeysAround(coarse.grid().keyOf(point, s),
+                            [&](const CellKey<3>& near) { found = found || coarse.find(near, s); });
+      return found;
+    });
+    if (!is_near && !points.empty()) far.push_back(scans.files()[i].path.string());
+  }
+  return far;
+}
+
+void warnOfFarScans(const PcdScans& scans, const std::string& map) {
+  const Vector<3> infinite = Vector<3>::Constant(std::numeric_limits<double>::infinity());
+  MapReader<3> reader(map);
+  const GaussianMap<3> coarse = reader.load({-infinite, infinite}, reader.grid().scales() - 1);
+  const auto extent = extentOf<3>(coarse);
+  const std::vector<std::string> far = farScans(scans, coarse);
+  if (far.empty() || !extent) return;
+  warn(far.front() + (far.size() > 1 ? " and " + std::to_string(far.size() - 1) + " more" : "") +
+       ": no point lies near the map " + map + ", which covers " + textOf(*extent) +
+       "; check the pose, --frame and the units");
+}
+
+void warnOfRepeats(const MapUpdate& update, const std::string& map) {
+  // Of a scan that is added again, only the cells that no other scan hit show it. Single points of different scans can
+  // be equal by chance, because many sensors round their ranges.
+  constexpr std::size_t kFewest = 3;
+  constexpr double kDenseShare = 0.001, kShare = 0.3;
+  const auto exceeds = [](std::size_t some, std::size_t all, double share) {
+    return some >= kFewest && static_cast<double>(some) > share * static_cast<double>(all);
+  };
+  if (!exceeds(update.dense_cells_repeated, update.dense_cells, kDenseShare) &&
+      !exceeds(update.cells_repeated, update.cells_added_to, kShare))
+    return;
+  warn(std::to_string(update.cells_repeated) + " of " + std::to_string(update.cells_added_to) +
+       " cells with new points held exactly these points already, so a scan is already in " + map +
+       " and its points now count twice; if that is not wanted, build the map again without it");
+}
+
 }  // namespace
 
 void updateFromScans(const Pcd2mapOptions& options) {
@@ -69,7 +123,11 @@ void updateFromScans(const Pcd2mapOptions& options) {
   const MapOptions map = growingMapOptions<3>(options.update);
   const Recorded recorded = recordedIn(loadMetadata(options.update));
   const PcdScans scans = openScans(options.input);
+  noteDroppedFields(scans);
   const AccumulatedScans accumulated = accumulate(options, scans, map.resolution);
+
+  warnOfCoordinates(scans, map.resolution);
+  warnOfFarScans(scans, options.update);
 
   BudgetInput merging = options.budget;
   if (!merging.cost) merging.cost = recorded.cost;
@@ -86,6 +144,7 @@ void updateFromScans(const Pcd2mapOptions& options) {
     metadata.erase("error_curves");  // they describe the old map
     addHistory(metadata, step);
   });
+  warnOfRepeats(update, options.update);
   report(options, scans, accumulated.counts, update, start);
 }
 

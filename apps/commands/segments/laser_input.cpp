@@ -2,12 +2,14 @@
 #include "commands/segments/laser_input.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "common/command.h"
 #include "common/report.h"
 
 #include "gaussmap/io/logs/carmen_log.h"
 #include "gaussmap/segments/laser_scan.h"
+#include "io/scans/scan_names.h"
 
 namespace gaussmap::app {
 namespace {
@@ -34,7 +36,10 @@ LaserScans readLogs(const std::vector<std::string>& paths) {
 
 LaserScans readPcds(const LaserInput& input) {
   PlanarScanOptions options;
-  if (input.scans.max_range > 0.0) options.max_range = input.scans.max_range;
+  const AccumulateOptions limits = accumulateOptions(input.scans, MapOptions().resolution, 0);
+  options.max_range = limits.max_range;
+  options.min_range = limits.min_range;
+  options.crop = limits.crop;
   if (!input.slice.empty()) {
     options.slice = true;
     options.z_min = input.slice[0];
@@ -44,10 +49,11 @@ LaserScans readPcds(const LaserInput& input) {
   LaserScans all;
   const PcdScans scans = openScans(input.scans);
   all.scans = planarScans(scans, options);
+  warnOfCoordinates(scans, MapOptions().resolution);
   for (const PcdScan& scan : scans.files()) {
-    all.names.push_back(scan.path.filename().string());
     all.files.push_back(scan.path);
   }
+  all.names = detail::scanNames(all.files);
   return all;
 }
 
@@ -58,7 +64,7 @@ void addLaserOptions(Command& command, LaserInput& input) {
       .texts("scans", input.scans.paths,
              "CARMEN logs (.log, .log.gz), or PCD scans of a planar laser, or directories of them")
       .required();
-  command.files({"scans"}, {".log", ".log.gz", ".pcd"});
+  command.files({"scans"}, {".log", ".log.gz", ".pcd", ".pcd.gz"});
   addScanOptions(command, input.scans);
   command.numbers("--slice", input.slice, 2, -1e6, 1e6,
                   "use only points of 3-D scans between these two heights in the map frame [m]");
@@ -78,9 +84,12 @@ LaserScans readLaserScans(const LaserInput& input) {
   if (are_logs && (!input.slice.empty() || !input.scans.poses.empty() || input.scans.frame != "sensor"))
     throw UsageError(
         "--slice, --poses and --frame: only for PCD scans, because a log contains planar scans with their poses");
+  if (are_logs && !input.scans.crop.empty()) throw UsageError("--crop: only for PCD scans");
   LaserScans all = are_logs ? readLogs(paths) : readPcds(input);
   for (LaserScan& scan : all.scans) {
     if (are_logs && input.scans.max_range > 0.0) scan.max_range = std::min(scan.max_range, input.scans.max_range);
+    for (double& range : scan.ranges)
+      if (are_logs && range < input.scans.min_range) range = std::numeric_limits<double>::quiet_NaN();
     const double square = input.position_noise * input.position_noise;
     scan.pose.covariance.diagonal() << square, square, input.heading_noise * input.heading_noise;
   }

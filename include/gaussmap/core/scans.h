@@ -63,13 +63,15 @@ inline bool isReturn(const Eigen::Vector3d& point) {
   return point.allFinite() && !point.isZero(0.0);
 }
 
-/// Counts the accepted and the dropped points of scans. The other four counts add up to `read`.
+/// Counts the accepted and the dropped points of scans. The other counts add up to `read`.
 struct GAUSSMAP_API PointCounts {
   std::int64_t read = 0;          ///< all points
   std::int64_t accepted = 0;      ///< points that were used
   std::int64_t non_finite = 0;    ///< dropped: a coordinate is NaN or infinite
   std::int64_t at_sensor = 0;     ///< dropped: range 0, see isReturn()
   std::int64_t beyond_range = 0;  ///< dropped: farther from the sensor than max_range
+  std::int64_t too_near = 0;      ///< dropped: nearer to the sensor than min_range
+  std::int64_t outside = 0;       ///< dropped: outside the box to which the scans are cropped
 
   /// Adds the counts of other points.
   PointCounts& operator+=(const PointCounts& other);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <vector>
 #include "gaussmap/core/scans.h"
 
@@ -19,6 +20,8 @@ struct GAUSSMAP_API AccumulateOptions {
   double resolution = 0.1;                                     ///< side of the cells [m]
   double max_range = std::numeric_limits<double>::infinity();  ///< points farther from the sensor are ignored [m]
   int threads = 0;                                             ///< 0 = all cores
+  double min_range = 0.0;                                      ///< points nearer to the sensor are ignored [m]
+  std::optional<Box<3>> crop = std::nullopt;                   ///< points outside this box are ignored [m, map frame]
 };
 
 /// The state of accumulateScans() after a scan.
@@ -59,7 +62,7 @@ GAUSSMAP_API PointCounts accumulateScansInParts(const Scans& scans, const Accumu
 
 /// Returns the accepted points of all scans, in their order [m, map frame]. A map can be compared with these points.
 /// AccumulateOptions::resolution and AccumulateOptions::threads are not used. Throws FileError if a file is damaged,
-/// and std::invalid_argument if AccumulateOptions::max_range is negative or NaN.
+/// and std::invalid_argument like accumulateScans().
 GAUSSMAP_API std::vector<Vector<3>> readPoints(const Scans& scans, const AccumulateOptions& options);
 
 /// Builds the map from moments per cell, with one Gaussian per cell at every scale.

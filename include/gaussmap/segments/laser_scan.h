@@ -3,10 +3,12 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 #include "gaussmap/core/scans.h"
 
 #include "gaussmap/core/gaussian.h"
+#include "gaussmap/map/grid.h"
 #include "gaussmap/version.h"
 
 namespace gaussmap {
@@ -51,6 +53,8 @@ struct GAUSSMAP_API PlanarScanOptions {
   double step = 0.5;
   /// Points farther from the sensor are not returns [m]. The distance is measured in the xy plane of the map frame.
   double max_range = std::numeric_limits<double>::infinity();
+  double min_range = 0.0;                     ///< points nearer to the sensor are not returns [m]
+  std::optional<Box<3>> crop = std::nullopt;  ///< points outside this box are not returns [m, map frame]
 };
 
 /// Converts a cloud to a sweep of a planar laser. The points are projected along z of the map frame. The bearing of a

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gaussmap/io/export/map_tiles.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -17,10 +18,12 @@
 
 #include "core/check.h"
 #include "gaussmap/io/pcd/map_pcd.h"
+#include "gaussmap/io/pcd/pcd_reader.h"
 #include "gaussmap/mapping/build.h"
 #include "io/files/atomic_file.h"
 #include "io/files/text.h"
 #include "io/files/text_lines.h"
+#include "io/pcd/wide_records.h"
 
 namespace gaussmap {
 using namespace detail;
@@ -38,15 +41,16 @@ std::string exactText(double value) {
 }
 
 /// Groups the records by the square that contains them, given by its lower corner. The means become map coordinates.
-std::map<Corner, GaussianRecords> bySquare(const GaussianRecords& all, int size) {
+std::map<Corner, GaussianRecords> bySquare(const GaussianRecords& all, int size, bool floats) {
   std::map<Corner, GaussianRecords> squares;
   for (GaussianRecord record : all.records) {
     Corner corner{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double mean = static_cast<double>(record.mean[axis]) + all.origin(static_cast<Eigen::Index>(axis));
-      record.mean[axis] = static_cast<float>(mean);
+      double& mean = record.mean[axis];
+      mean += all.origin(static_cast<Eigen::Index>(axis));
+      if (floats) mean = static_cast<double>(static_cast<float>(mean));  // the square is that of the written mean
       if (axis == 2) continue;
-      const double low = std::floor(static_cast<double>(record.mean[axis]) / size) * size;
+      const double low = std::floor(mean / size) * size;
       if (!(std::abs(low) < static_cast<double>(std::numeric_limits<std::int32_t>::max() - size)))
         throw std::out_of_range("a Gaussian at " + numberText(mean) +
                                 " m is too far away: the index of the tiles stores 32-bit metres");
@@ -55,6 +59,16 @@ std::map<Corner, GaussianRecords> bySquare(const GaussianRecords& all, int size)
     squares[corner].records.push_back(record);
   }
   return squares;
+}
+
+/// Returns half of the step between floats at the farthest coordinate of the records [m].
+double roundingOfFloats(const GaussianRecords& all) {
+  double farthest = 0.0;
+  for (const GaussianRecord& record : all.records)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      farthest = std::max(farthest, std::abs(record.mean[axis] + all.origin(static_cast<Eigen::Index>(axis))));
+  const auto at = static_cast<float>(farthest);
+  return 0.5 * (double{std::nextafter(at, std::numeric_limits<float>::infinity())} - double{at});
 }
 
 /// A directory that is written under a temporary name. commit() gives it its final name; otherwise it is removed.
@@ -158,7 +172,11 @@ bool isPlainFinest(const GaussianMap<3>& map, const GaussianRecords& all) {
 
 WrittenTiles saveTiles(const fs::path& folder, const GaussianMap<3>& map, const TilesOptions& options) {
   require(options.size >= 1, "size", options.size, "must be at least 1 m");
-  const std::map<Corner, GaussianRecords> squares = bySquare(toRecords(map, options.scale), options.size);
+  const GaussianRecords all = toRecords(map, options.scale);
+  WrittenTiles written;
+  written.doubles = !options.floats && !all.origin.isZero();
+  written.rounding = roundingOfFloats(all);
+  const std::map<Corner, GaussianRecords> squares = bySquare(all, options.size, !written.doubles);
   PartFolder part(folder);
   const MapOptions& grid = map.options();
   std::ostringstream index;
@@ -166,10 +184,12 @@ WrittenTiles saveTiles(const fs::path& folder, const GaussianMap<3>& map, const 
   index << kOptionsComment << " resolution " << exactText(grid.resolution) << " ratio " << grid.ratio << " scales "
         << grid.scales << " noise " << exactText(grid.noise) << '\n'
         << "x_resolution: " << options.size << ".0\ny_resolution: " << options.size << ".0\n";
-  WrittenTiles written;
   for (const auto& [corner, records] : squares) {
     const std::string name = "tile_" + std::to_string(corner[0]) + "_" + std::to_string(corner[1]) + ".pcd";
-    saveRecordsPcd(part.path() / name, records);
+    if (written.doubles)
+      saveWideRecordsPcd(part.path() / name, records);
+    else
+      saveRecordsPcd(part.path() / name, records);
     index << name << ": [" << corner[0] << ", " << corner[1] << "]\n";
     ++written.tiles;
     written.gaussians += records.records.size();
@@ -184,11 +204,19 @@ WrittenTiles saveTiles(const fs::path& folder, const GaussianMap<3>& map, const 
 
 GaussianMap<3> loadTiles(const fs::path& folder) {
   const fs::path path = folder / kTilesIndex;
+  std::error_code ignored;
+  if (!fs::exists(path, ignored))
+    throw FileError(path, "does not exist, so " + folder.string() +
+                              " is not a folder of tiles; build a map of PCD files with gaussmap pcd2map");
   const Index index = readIndex(path);
   GaussianRecords all;
   for (const std::string& file : index.files) {
+    if (PcdReader(folder / file).header().find("covariance") == nullptr)
+      throw FileError(folder / file, "holds points, not Gaussians; build a map from such tiles with gaussmap pcd2map " +
+                                         folder.string() + " --frame map -o MAP");
     GaussianRecords tile = loadRecordsPcd(folder / file);
-    if (!tile.origin.isZero()) throw FileError(folder / file, "is not a tile: its VIEWPOINT is not the origin");
+    for (GaussianRecord& record : tile.records)
+      for (std::size_t axis = 0; axis < 3; ++axis) record.mean[axis] += tile.origin(static_cast<Eigen::Index>(axis));
     all.records.insert(all.records.end(), tile.records.begin(), tile.records.end());
   }
   try {

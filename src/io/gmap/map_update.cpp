@@ -98,6 +98,18 @@ Tile<D> sortedTile(const Tile<D>& tile, const MapOptions& options, int s) {
   return sorted;
 }
 
+/// Returns true if all sums of `whole` are those of `part`, times the same whole number.
+template <int D>
+bool isMultiple(const CellMoments<D>& whole, const CellMoments<D>& part) {
+  const std::int64_t times = whole.count / part.count;
+  const auto fits = [times](const auto& a, const auto& b) {
+    return std::equal(a.begin(), a.end(), b.begin(),
+                      [times](std::int64_t x, std::int64_t y) { return x == times * y; });
+  };
+  return times > 0 && whole.count == times * part.count && fits(whole.sum, part.sum) &&
+         fits(whole.product, part.product);
+}
+
 template <int D>
 class Updater {
  public:
@@ -134,6 +146,7 @@ class Updater {
         });
     database_.execute("BEGIN");
     MapUpdate update;
+    compare(before, update);
     for (int s = grid_.scales() - 1; s >= 0; --s) update.tiles_written += writeTiles(after, s);
     for (int s = 0; s < grid_.scales(); ++s) {
       const auto at = static_cast<std::size_t>(s);
@@ -149,6 +162,20 @@ class Updater {
   }
 
  private:
+  /// Counts the cells that already held the new points.
+  void compare(const GaussianMap<D>& before, MapUpdate& update) const {
+    update.cells_added_to = added_.size();
+    for (std::size_t i = 0; i < added_.size(); ++i) {
+      const CellMoments<D>& fresh = added_[i].moments;
+      const auto known = before.find(added_[i].key, 0);
+      const bool is_repeated = known && isMultiple<D>(before.scale(0).moments[*known], fresh),
+                 is_dense = fresh.count >= kDensePoints;
+      update.cells_repeated += is_repeated;
+      update.dense_cells += is_dense;
+      update.dense_cells_repeated += is_dense && is_repeated;
+    }
+  }
+
   /// Returns the maximum number of Gaussians of a coarse scale of the whole map if the scale has this many cells.
   std::size_t maxGaussians(std::size_t s, std::size_t cells) const {
     constexpr double kRounding = 1e-9;

@@ -10,6 +10,7 @@
 #include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
 #include "gaussmap/io/pcd/pcd_writer.h"
+#include "io/pcd/wide_records.h"
 
 namespace gaussmap {
 namespace {
@@ -29,22 +30,41 @@ Eigen::Vector3d originOf(const PcdHeader& header) {
   return origin;
 }
 
-}  // namespace
-
-void saveRecordsPcd(const std::filesystem::path& path, const GaussianRecords& all) {
+/// Writes records whose means relative to `origin` have the type Real.
+template <typename Real>
+void writeRecords(const std::filesystem::path& path, const GaussianRecords& all, const Eigen::Vector3d& origin) {
   const GaussianRecord empty{};
   const GaussianRecord& first = all.records.empty() ? empty : all.records.front();
   constexpr std::size_t kStride = sizeof(GaussianRecord);
+  const Eigen::Vector3d shift = all.origin - origin;
+  std::vector<std::array<Real, 3>> means;
+  means.reserve(all.records.size() + 1);
+  for (const GaussianRecord& record : all.records)
+    means.push_back({static_cast<Real>(record.mean[0] + shift.x()), static_cast<Real>(record.mean[1] + shift.y()),
+                     static_cast<Real>(record.mean[2] + shift.z())});
+  if (means.empty()) means.emplace_back();
   Pose viewpoint;
-  viewpoint.translation = all.origin;
-  writePcd(path, all.records.size(),
-           {pcdOutput("x", &first.mean[0], 1, kStride), pcdOutput("y", &first.mean[1], 1, kStride),
-            pcdOutput("z", &first.mean[2], 1, kStride), pcdOutput("covariance", first.covariance.data(), 6, kStride),
-            pcdOutput("weight", &first.weight, 1, kStride), pcdOutput("occupancy", &first.occupancy, 1, kStride),
-            pcdOutput("cell_side", &first.cell_side, 1, kStride), pcdOutput("scale", &first.scale, 1, kStride),
-            pcdOutput("cell_x", &first.cell[0], 1, kStride), pcdOutput("cell_y", &first.cell[1], 1, kStride),
-            pcdOutput("cell_z", &first.cell[2], 1, kStride)},
-           viewpoint);
+  viewpoint.translation = origin;
+  writePcd(
+      path, all.records.size(),
+      {pcdOutput("x", &means.front()[0], 1, sizeof(means.front())),
+       pcdOutput("y", &means.front()[1], 1, sizeof(means.front())),
+       pcdOutput("z", &means.front()[2], 1, sizeof(means.front())),
+       pcdOutput("covariance", first.covariance.data(), 6, kStride), pcdOutput("weight", &first.weight, 1, kStride),
+       pcdOutput("occupancy", &first.occupancy, 1, kStride), pcdOutput("cell_side", &first.cell_side, 1, kStride),
+       pcdOutput("scale", &first.scale, 1, kStride), pcdOutput("cell_x", &first.cell[0], 1, kStride),
+       pcdOutput("cell_y", &first.cell[1], 1, kStride), pcdOutput("cell_z", &first.cell[2], 1, kStride)},
+      viewpoint);
+}
+
+}  // namespace
+
+void saveRecordsPcd(const std::filesystem::path& path, const GaussianRecords& all) {
+  writeRecords<float>(path, all, all.origin);
+}
+
+void detail::saveWideRecordsPcd(const std::filesystem::path& path, const GaussianRecords& all) {
+  writeRecords<double>(path, all, Eigen::Vector3d::Zero());
 }
 
 void savePcd(const std::filesystem::path& path, const GaussianMap<3>& map, const ExportOptions& options) {
@@ -57,7 +77,8 @@ void savePcd(const std::filesystem::path& path, const GaussianMap<3>& map, const
 GaussianRecords loadRecordsPcd(const std::filesystem::path& path) {
   const PcdReader reader(path);
   if (reader.header().find("covariance") == nullptr)
-    throw FileError(path, "holds points, not Gaussians: it has no field 'covariance'");
+    throw FileError(
+        path, "holds points, not Gaussians: it has no field 'covariance'; build a map from it with gaussmap pcd2map");
   std::vector<PcdColumn> wanted = {{"x"},         {"y"},     {"z"},      {"weight"}, {"occupancy"},
                                    {"cell_side"}, {"scale"}, {"cell_x"}, {"cell_y"}, {"cell_z"}};
   for (std::size_t element = 0; element < 6; ++element) wanted.push_back({"covariance", element});
@@ -67,7 +88,7 @@ GaussianRecords loadRecordsPcd(const std::filesystem::path& path) {
     for (std::size_t i = 0; i < reader.size(); ++i) {
       GaussianRecord record;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        record.mean[axis] = static_cast<float>(columns[axis][i]);
+        record.mean[axis] = columns[axis][i];
         record.cell[axis] = asIndex(columns[7 + axis][i]);
       }
       for (std::size_t element = 0; element < 6; ++element)
@@ -114,7 +135,9 @@ bool isMap(const std::filesystem::path& path) {
 GaussianMap<3> loadAny(const std::filesystem::path& path, MapMetadata* metadata) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) throw FileError(path, "does not exist");
-  if (!isGmap(path) && (path.extension() != ".gmap" || isMap(path))) return loadPcd(path);
+  std::string ending = path.extension().string();
+  for (char& c : ending) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  if (!isGmap(path) && (ending != ".gmap" || isMap(path))) return loadPcd(path);
   GaussianMap<3> map = load(path);
   if (metadata != nullptr) *metadata = loadMetadata(path);
   return map;

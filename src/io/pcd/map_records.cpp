@@ -25,7 +25,7 @@ constexpr double kRounding = 1e-6;  // possible error of an eigenvalue after rou
 GaussianRecord toRecord(const GaussianMap<3>& map, std::size_t index, int scale, const Eigen::Vector3d& origin) {
   const CellKey<3>& key = map.scale(scale).keys[map.cellOf(index, scale)];
   const Gaussian<3> gaussian = gaussianAbout(origin, map, index, scale);
-  const Eigen::Vector3f mean = gaussian.mean.cast<float>();
+  const Eigen::Vector3d& mean = gaussian.mean;
   const Eigen::Matrix3f cov = gaussian.cov.cast<float>();
   return {{mean.x(), mean.y(), mean.z()},
           {cov(0, 0), cov(0, 1), cov(0, 2), cov(1, 1), cov(1, 2), cov(2, 2)},

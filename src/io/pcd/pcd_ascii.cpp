@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "io/files/text.h"
@@ -14,7 +16,11 @@ class AsciiParser {
       : path_(path), header_(header), place_(data.data()), end_(place_ + data.size()), line_(header.data_line) {}
 
   void parse(std::vector<AsciiColumn>& columns) {
-    for (AsciiColumn& column : columns) column.values.resize(header_.points);
+    for (AsciiColumn& column : columns)
+      if (isInteger(column.kind))
+        column.integers.resize(header_.points);
+      else
+        column.values.resize(header_.points);
     for (std::size_t point = 0; point < header_.points; ++point) {
       if (!skipBlankLines())
         throw FileError(
@@ -26,14 +32,19 @@ class AsciiParser {
   }
 
  private:
+  static bool isInteger(AsciiKind kind) { return kind == AsciiKind::Signed || kind == AsciiKind::Unsigned; }
+
   [[noreturn]] void fail(const std::string& what) const {
     throw FileError(path_, "line " + std::to_string(line_) + ": " + what);
   }
 
-  // Returns false at the end of the file.
+  // Skips blank lines and comments. Returns false at the end of the file.
   bool skipBlankLines() {
-    while (place_ != end_ && (isBlank(*place_) || *place_ == '\n')) line_ += *place_++ == '\n';
-    return place_ != end_;
+    while (true) {
+      while (place_ != end_ && (isBlank(*place_) || *place_ == '\n')) line_ += *place_++ == '\n';
+      if (place_ == end_ || *place_ != '#') return place_ != end_;
+      while (!atLineEnd()) ++place_;
+    }
   }
 
   void skipBlanks() {
@@ -48,14 +59,36 @@ class AsciiParser {
       skipBlanks();
       if (atLineEnd()) fail(std::to_string(column) + " columns instead of " + std::to_string(header_.columns));
       if (wanted != columns.end() && wanted->column == column) {
-        const double value = parseWord(wanted->single);
-        for (; wanted != columns.end() && wanted->column == column; ++wanted) wanted->values[point] = value;
+        const char* const word = place_;
+        for (; wanted != columns.end() && wanted->column == column; ++wanted) {
+          place_ = word;
+          if (isInteger(wanted->kind))
+            wanted->integers[point] = parseInteger(wanted->kind);
+          else
+            wanted->values[point] = parseWord(wanted->kind == AsciiKind::Single);
+        }
       } else {
         while (!atWordEnd()) ++place_;
       }
     }
     skipBlanks();
     if (!atLineEnd()) fail("more than " + std::to_string(header_.columns) + " columns");
+  }
+
+  std::uint64_t parseInteger(AsciiKind kind) {
+    std::int64_t number = 0;
+    std::uint64_t positive = 0;
+    const bool is_signed = kind == AsciiKind::Signed;
+    const char* const first = end_ - place_ > 1 && *place_ == '+' && place_[1] != '-' ? place_ + 1 : place_;
+    const std::from_chars_result result =
+        is_signed ? std::from_chars(first, end_, number) : std::from_chars(first, end_, positive);
+    if (result.ec == std::errc() && (result.ptr == end_ || isBlank(*result.ptr) || *result.ptr == '\n')) {
+      place_ = result.ptr;
+      return is_signed ? static_cast<std::uint64_t>(number) : positive;
+    }
+    // Some programs write integers like 1.6e9, 3.0 or nan.
+    const double value = parseWord(false);
+    return is_signed ? static_cast<std::uint64_t>(nearestOf<std::int64_t>(value)) : nearestOf<std::uint64_t>(value);
   }
 
   double parseWord(bool single) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <unordered_set>
 
 #include "io/files/text.h"
 
@@ -16,6 +15,16 @@ constexpr std::array<std::string_view, kKeywords> kNames = {"VERSION", "FIELDS",
                                                             "WIDTH",   "HEIGHT", "VIEWPOINT", "POINTS", "DATA"};
 // No header needs this much. The limit avoids a search through a large file that is not a PCD file.
 constexpr std::size_t kLongestHeader = std::size_t{1} << 20;
+
+char upper(char c) {
+  return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+}
+
+std::string lowered(std::string_view word) {
+  std::string lower(word);
+  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return lower;
+}
 
 struct Line {
   std::size_t number = 0;  // 0: the keyword does not occur
@@ -35,7 +44,9 @@ class HeaderParser {
     readTypes();
     readCounts();
     layOutRecord();
+    nameCoordinates();
     requireCoordinates();
+    dropEmptyFields();
     readPoints();
     readViewpoint();
     readEncoding();
@@ -66,6 +77,8 @@ class HeaderParser {
       const Keyword keyword = keywordOf(words.front(), number);
       if (has(keyword)) fail(number, "a second line " + std::string(kNames[keyword]));
       words.erase(words.begin());
+      words.erase(std::find_if(words.begin(), words.end(), [](std::string_view word) { return word.front() == '#'; }),
+                  words.end());  // a comment
       lines_[keyword] = {number, std::move(words)};
       if (keyword != kData) continue;
       header_.data_offset = static_cast<std::size_t>(rest.data() - bytes_.data());
@@ -111,9 +124,12 @@ class HeaderParser {
   void readVersion() const {
     if (!has(kVersion)) return;
     const Line& line = lines_[kVersion];
+    std::string_view word = line.words.size() == 1 ? line.words.front() : "";
+    if (word.substr(0, 4) == "PCD_") word.remove_prefix(4);
+    if (!word.empty() && upper(word.front()) == 'V') word.remove_prefix(1);  // some programs write v0.7 or PCD_V7
     double version = 0.0;
-    if (line.words.size() == 1 && parseNumber(line.words.front(), version))
-      for (const double known : {0.5, 0.6, 0.7})
+    if (parseNumber(word, version))
+      for (const double known : {0.5, 0.6, 0.7, 5.0, 6.0, 7.0})
         if (std::abs(version - known) < 1e-9) return;
     fail(line.number,
          "VERSION is " + quote(line.words.empty() ? "" : line.words.front()) + ", expected 0.5, 0.6 or 0.7");
@@ -121,10 +137,7 @@ class HeaderParser {
 
   void readFields() {
     if (!has(kFields)) failWithout(kFields);
-    std::unordered_set<std::string_view> names;
     for (const std::string_view name : lines_[kFields].words) {
-      if (name != "_" && !names.insert(name).second)
-        fail(lines_[kFields].number, "the field " + quote(name) + " occurs twice");
       PcdField field;
       field.name = name;
       header_.fields.push_back(std::move(field));
@@ -146,21 +159,20 @@ class HeaderParser {
     if (!has(kType)) return;
     requireOnePerField(kType);
     for (std::size_t i = 0; i < header_.fields.size(); ++i) {
-      const std::string_view type = lines_[kType].words[i];
-      if (type != "I" && type != "U" && type != "F")
-        fail(lines_[kType].number, "the TYPE of " + nameOf(i) + " is " + quote(type) + ", not I, U or F");
-      header_.fields[i].type = type.front();
+      const std::string_view word = lines_[kType].words[i];
+      char type = upper(word.front());  // PCL reads only the first letter too, for example of float
+      if (type == 'B' && header_.fields[i].size == 1) type = 'U';  // PCL's bool
+      if (type != 'I' && type != 'U' && type != 'F')
+        fail(lines_[kType].number, "the TYPE of " + nameOf(i) + " is " + quote(word) + ", not I, U or F");
+      header_.fields[i].type = type;
     }
   }
 
   void readCounts() {
     if (!has(kCount)) return;
     requireOnePerField(kCount);
-    for (std::size_t i = 0; i < header_.fields.size(); ++i) {
+    for (std::size_t i = 0; i < header_.fields.size(); ++i)
       header_.fields[i].count = wholeNumber(kCount, lines_[kCount].words[i]);
-      if (header_.fields[i].count == 0)
-        fail(lines_[kCount].number, "the COUNT of " + nameOf(i) + " is 0: leave the field out");
-    }
   }
 
   std::string nameOf(std::size_t field) const { return "field " + quote(header_.fields[field].name); }
@@ -177,11 +189,24 @@ class HeaderParser {
     }
   }
 
+  std::size_t fieldsNamed(std::string_view name) const {
+    return static_cast<std::size_t>(std::count_if(header_.fields.begin(), header_.fields.end(),
+                                                  [&](const PcdField& field) { return field.name == name; }));
+  }
+
+  // PDAL writes X Y Z. All other code looks for x y z.
+  void nameCoordinates() {
+    for (const char* const name : {"x", "y", "z"})
+      if (fieldsNamed(name) > 0) return;
+    for (PcdField& field : header_.fields)
+      if (field.name == "X" || field.name == "Y" || field.name == "Z") field.name = lowered(field.name);
+  }
+
   void requireCoordinates() const {
     for (const char* const name : {"x", "y", "z"}) {
       const PcdField* const field = header_.find(name);
-      if (!field)
-        fail(lines_[kFields].number, "no field " + quote(name) + ": a map needs x, y and z (in lower case) [m]");
+      if (!field) fail(lines_[kFields].number, "no field " + quote(name) + ": a map needs x, y and z [m]");
+      if (fieldsNamed(name) > 1) fail(lines_[kFields].number, "the field " + quote(name) + " occurs twice");
       const std::string found = std::string(name) + " is TYPE " + field->type + " SIZE " + std::to_string(field->size);
       if (field->type != 'F')
         fail(lines_[kType].number,
@@ -191,6 +216,13 @@ class HeaderParser {
       if (field->count != 1)
         fail(lines_[kCount].number, std::string(name) + " has COUNT " + std::to_string(field->count) + " instead of 1");
     }
+  }
+
+  // A field with COUNT 0 holds nothing. Some programs write such fields as padding.
+  void dropEmptyFields() {
+    header_.fields.erase(std::remove_if(header_.fields.begin(), header_.fields.end(),
+                                        [](const PcdField& field) { return field.count == 0; }),
+                         header_.fields.end());
   }
 
   void readPoints() {
@@ -225,7 +257,7 @@ class HeaderParser {
 
   void readEncoding() {
     const Line& line = lines_[kData];
-    const std::string_view word = line.words.size() == 1 ? line.words.front() : "";
+    const std::string word = line.words.size() == 1 ? lowered(line.words.front()) : "";
     if (word == "ascii") {
       header_.encoding = PcdEncoding::Ascii;
     } else if (word == "binary") {

@@ -4,12 +4,15 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "gaussmap/io/pcd/pcd_writer.h"
+#include "io/pcd/pcd_fields.h"
 
 namespace gaussmap::detail {
 namespace {
@@ -86,7 +89,7 @@ std::vector<PcdOutput> outputsOf(const std::vector<PcdField>& fields, const char
 void checkWritable(const PcdReader& reader) {
   const PcdHeader& header = reader.header();
   try {
-    checkPcdFields(outputsOf(header.fields, nullptr, header.record_size));
+    checkEachField(outputsOf(header.fields, nullptr, header.record_size));
   } catch (const std::invalid_argument& error) {
     throw FileError(reader.path(), std::string(error.what()) + ": it cannot be written again");
   }
@@ -117,8 +120,54 @@ void keepOnly(PcdRecords& records, const std::vector<bool>& keep) {
   records.bytes.resize(static_cast<std::size_t>(to - records.bytes.data()));
 }
 
-void moveToMap(PcdRecords& records, const Pose& pose) {
+bool hasFloatCoordinates(const PcdRecords& records) {
+  return std::all_of(records.fields.begin(), records.fields.end(), [](const PcdField& field) {
+    return (field.name != "x" && field.name != "y" && field.name != "z") || field.size == sizeof(float);
+  });
+}
+
+void widenCoordinates(PcdRecords& records) {
+  PcdRecords wide;
+  wide.width = records.width;
+  wide.viewpoint = records.viewpoint;
+  for (PcdField field : records.fields) {
+    const bool is_coordinate = field.name == "x" || field.name == "y" || field.name == "z";
+    if (is_coordinate) field.size = sizeof(double);
+    field.offset = wide.record_size;
+    wide.record_size += field.size * field.count;
+    wide.fields.push_back(std::move(field));
+  }
+  if (wide.record_size == records.record_size) return;  // they are doubles already
+  wide.bytes.resize(records.size() * wide.record_size);
+  for (std::size_t f = 0; f < wide.fields.size(); ++f) {
+    const PcdField &from = records.fields[f], &to = wide.fields[f];
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      const char* const source = records.bytes.data() + i * records.record_size + from.offset;
+      char* const target = wide.bytes.data() + i * wide.record_size + to.offset;
+      if (from.size == to.size) {
+        std::memcpy(target, source, from.size * from.count);
+      } else {
+        float single = 0.0f;
+        std::memcpy(&single, source, sizeof(single));
+        const double number{single};
+        std::memcpy(target, &number, sizeof(number));
+      }
+    }
+  }
+  records = std::move(wide);
+}
+
+void moveToMap(PcdRecords& records, const Pose& pose, double precision) {
   const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
+  double farthest = 0.0;
+  {
+    const VectorField given(records, {"x", "y", "z"});
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      const double distance = (rotation * given.get(i) + pose.translation).cwiseAbs().maxCoeff();
+      if (std::isfinite(distance)) farthest = std::max(farthest, distance);
+    }
+  }
+  if (farthest * double{std::numeric_limits<float>::epsilon()} > precision) widenCoordinates(records);
   VectorField xyz(records, {"x", "y", "z"}), normal(records, {"normal_x", "normal_y", "normal_z"});
   for (std::size_t i = 0; i < records.size(); ++i) {
     xyz.set(i, rotation * xyz.get(i) + pose.translation);
@@ -127,15 +176,23 @@ void moveToMap(PcdRecords& records, const Pose& pose) {
   records.viewpoint = Pose();
 }
 
-void append(PcdRecords& records, const PcdRecords& more) {
-  if (!sameFields(records.fields, more.fields)) throw std::invalid_argument("the clouds have different fields");
+void append(PcdRecords& records, PcdRecords more) {
+  if (!sameFields(records.fields, more.fields)) {
+    PcdRecords wide{records.fields, records.record_size, {}, 0, {}},
+        wide_more{more.fields, more.record_size, {}, 0, {}};
+    widenCoordinates(wide);
+    widenCoordinates(wide_more);
+    if (!sameFields(wide.fields, wide_more.fields)) throw std::invalid_argument("the clouds have different fields");
+    widenCoordinates(records);
+    widenCoordinates(more);
+  }
   records.bytes.insert(records.bytes.end(), more.bytes.begin(), more.bytes.end());
   records.width = 0;
 }
 
 void writePcd(const std::filesystem::path& path, const PcdRecords& records) {
-  writePcd(path, records.size(), outputsOf(records.fields, records.bytes.data(), records.record_size),
-           records.viewpoint, records.width);
+  writeFields(path, records.size(), outputsOf(records.fields, records.bytes.data(), records.record_size),
+              records.viewpoint, records.width);
 }
 
 }  // namespace gaussmap::detail

@@ -34,12 +34,20 @@ GAUSSMAP_API PcdRecords readRecords(const PcdReader& reader);
 /// PCL's filters. Throws std::invalid_argument unless there is one flag per point.
 GAUSSMAP_API void keepOnly(PcdRecords& records, const std::vector<bool>& keep);
 
-/// Transforms x, y, z by R p + t, and rotates normal_x, normal_y, normal_z if the cloud has them. The viewpoint becomes
-/// the identity. The types of the fields do not change.
-GAUSSMAP_API void moveToMap(PcdRecords& records, const Pose& pose);
+/// Returns true if x, y and z are floats (F 4).
+GAUSSMAP_API bool hasFloatCoordinates(const PcdRecords& records);
 
-/// Appends points that have the same fields. Throws std::invalid_argument if the fields differ.
-GAUSSMAP_API void append(PcdRecords& records, const PcdRecords& more);
+/// Converts x, y, z to doubles (F 8), if they are floats. The other fields keep their types.
+GAUSSMAP_API void widenCoordinates(PcdRecords& records);
+
+/// Transforms x, y, z by R p + t, and rotates normal_x, normal_y, normal_z if the cloud has them. The viewpoint becomes
+/// the identity. If floats would round a moved coordinate by more than `precision` [m], x, y, z become doubles. The
+/// types of the other fields do not change.
+GAUSSMAP_API void moveToMap(PcdRecords& records, const Pose& pose, double precision);
+
+/// Appends points that have the same fields. If x, y, z are floats in one cloud and doubles in the other, they become
+/// doubles. Throws std::invalid_argument if the fields differ in another way.
+GAUSSMAP_API void append(PcdRecords& records, PcdRecords more);
 
 /// Writes a binary PCD file atomically and without padding. Throws FileError if it cannot be written.
 GAUSSMAP_API void writePcd(const std::filesystem::path& path, const PcdRecords& records);

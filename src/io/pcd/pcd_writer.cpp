@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "io/files/atomic_file.h"
+#include "io/pcd/pcd_fields.h"
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "binary PCD is little-endian");
 
@@ -43,14 +44,12 @@ std::string header(std::size_t width, std::size_t height, const std::vector<PcdO
 
 }  // namespace
 
-void checkPcdFields(const std::vector<PcdOutput>& fields) {
+void detail::checkEachField(const std::vector<PcdOutput>& fields) {
   if (fields.empty()) throw std::invalid_argument("a PCD file needs at least one field");
-  std::set<std::string> names;
   for (const PcdOutput& field : fields) {
     const auto printable = [](char c) { return c > ' ' && c < '\x7F'; };
     if (field.name.empty() || !std::all_of(field.name.begin(), field.name.end(), printable))
       throw std::invalid_argument("PCD field '" + field.name + "': the name must be one word");
-    if (!names.insert(field.name).second) throw std::invalid_argument("PCD field '" + field.name + "' occurs twice");
     const bool wide = field.size == 4 || field.size == 8, narrow = field.size == 1 || field.size == 2;
     const bool integer = field.type == 'I' || field.type == 'U';
     if (!(field.type == 'F' && wide) && !(integer && (wide || narrow)))
@@ -60,9 +59,22 @@ void checkPcdFields(const std::vector<PcdOutput>& fields) {
   }
 }
 
+void checkPcdFields(const std::vector<PcdOutput>& fields) {
+  checkEachField(fields);
+  std::set<std::string> names;
+  for (const PcdOutput& field : fields)
+    if (!names.insert(field.name).second) throw std::invalid_argument("PCD field '" + field.name + "' occurs twice");
+}
+
 void writePcd(const std::filesystem::path& path, std::size_t points, const std::vector<PcdOutput>& fields,
               const std::optional<Pose>& viewpoint, std::size_t width) {
   checkPcdFields(fields);
+  writeFields(path, points, fields, viewpoint, width);
+}
+
+void detail::writeFields(const std::filesystem::path& path, std::size_t points, const std::vector<PcdOutput>& fields,
+                         const std::optional<Pose>& viewpoint, std::size_t width) {
+  checkEachField(fields);
   for (const PcdOutput& field : fields)
     if (!field.data && points > 0) throw std::invalid_argument("PCD field '" + field.name + "' has no data");
   if (points > kMaxPoints) throw std::invalid_argument("a PCD file holds at most 2^32 - 1 points");

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "gaussmap/io/scans/pose_file.h"
+#include "io/scans/coordinate_checks.h"
 #include "io/scans/pose_checks.h"
 #include "io/scans/scan_names.h"
 
@@ -20,6 +21,22 @@ namespace {
 // when they are read.
 constexpr std::size_t kMaxOpen = 1024;
 
+/// Returns what to write if the scans are in subfolders, as in 000000/cloud.pcd.
+std::string hintOfSubfolders(const std::filesystem::path& directory) {
+  std::error_code error;
+  for (std::filesystem::directory_iterator folder(directory, error), end; !error && folder != end;
+       folder.increment(error)) {
+    std::error_code ignored;
+    if (!folder->is_directory(ignored)) continue;
+    for (std::filesystem::directory_iterator file(folder->path(), ignored), last; !ignored && file != last;
+         file.increment(ignored))
+      if (isScanName(file->path().filename()))
+        return ", but in its subdirectories: name them, for example " + (directory / "*").string() + "/" +
+               file->path().filename().string();
+  }
+  return "";
+}
+
 std::vector<std::filesystem::path> scansIn(const std::filesystem::path& directory) {
   std::vector<std::filesystem::path> scans;
   std::error_code error;
@@ -30,7 +47,7 @@ std::vector<std::filesystem::path> scansIn(const std::filesystem::path& director
     if (isScanName(entry->path().filename()) && !entry->is_directory(ignored)) scans.push_back(entry->path());
   }
   if (error) throw FileError(directory, "cannot be listed: " + error.message());
-  if (scans.empty()) throw FileError(directory, "no .pcd file in this directory");
+  if (scans.empty()) throw FileError(directory, "no .pcd file in this directory" + hintOfSubfolders(directory));
   std::sort(scans.begin(), scans.end(),
             [](const auto& a, const auto& b) { return naturalLess(a.filename().string(), b.filename().string()); });
   return scans;
@@ -44,21 +61,27 @@ std::string valueName(const PcdField& field, std::size_t element) {
 
 class PcdScanReader : public ScanReader {
  public:
-  explicit PcdScanReader(PcdReader reader) : reader_(std::move(reader)) {}
+  PcdScanReader(PcdReader reader, std::size_t index, std::shared_ptr<CoordinateSamples> samples)
+      : reader_(std::move(reader)), index_(index), samples_(std::move(samples)) {}
 
   std::size_t size() const override { return reader_.size(); }
   int columns() const override {
     const PcdHeader& header = reader_.header();
     return header.height > 1 ? static_cast<int>(header.width) : 0;
   }
-  void read(std::size_t first, PointBlock<3>& block) const override { reader_.read(first, block); }
+  void read(std::size_t first, PointBlock<3>& block) const override {
+    reader_.read(first, block);
+    samples_->add(index_, first, block, size());
+  }
   void requireWhole() const override { reader_.requireWhole(); }
 
   std::vector<std::string> valueNames() const override {
     std::vector<std::string> names;
     for (const PcdField& field : reader_.header().fields)
       for (std::size_t element = 0; isValue(field) && element < field.count; ++element)
-        names.push_back(valueName(field, element));
+        if (const std::string name = valueName(field, element);
+            std::find(names.begin(), names.end(), name) == names.end())
+          names.push_back(name);
     return names;
   }
   std::vector<double> values(const std::string& name) const override {
@@ -74,12 +97,16 @@ class PcdScanReader : public ScanReader {
   }
 
   PcdReader reader_;
+  std::size_t index_;
+  std::shared_ptr<CoordinateSamples> samples_;
 };
 
 PcdReader openScan(const std::filesystem::path& path) {
   PcdReader reader(path);
   if (reader.header().find("covariance") != nullptr && reader.header().find("cell_side") != nullptr)
-    throw FileError(path, "holds the Gaussians of a map, not the points of a scan");
+    throw FileError(path,
+                    "holds the Gaussians of a map, not the points of a scan; a directory of such tiles becomes a map "
+                    "with gaussmap tiles DIR -o MAP");
   return reader;
 }
 
@@ -97,7 +124,10 @@ void warnOfScansGivenTwice(const std::vector<std::filesystem::path>& paths, std:
 }  // namespace
 
 PcdScans::PcdScans(std::vector<PcdScan> scans, ScanFrame frame, std::vector<PcdReader> opened)
-    : scans_(std::move(scans)), opened_(std::move(opened)), frame_(frame) {
+    : scans_(std::move(scans)),
+      opened_(std::move(opened)),
+      frame_(frame),
+      samples_(std::make_shared<CoordinateSamples>(scans_.size())) {
   for (std::size_t i = opened_.size(); i < scans_.size(); ++i) {
     PcdReader reader(scans_[i].path);
     if (i < kMaxOpen) opened_.push_back(std::move(reader));
@@ -118,7 +148,25 @@ PcdReader PcdScans::reader(std::size_t index) const {
 }
 
 std::unique_ptr<ScanReader> PcdScans::open(std::size_t index) const {
-  return std::make_unique<PcdScanReader>(reader(index));
+  return std::make_unique<PcdScanReader>(reader(index), index, samples_);
+}
+
+std::vector<std::string> PcdScans::coordinateWarnings(double resolution) const {
+  std::vector<SampledScan> sampled;
+  for (std::size_t i = 0; i < scans_.size(); ++i) {
+    std::vector<Eigen::Vector3d> points = samples_->of(i);
+    if (points.empty()) continue;
+    const PcdHeader header = reader(i).header();
+    sampled.push_back({scans_[i].path, header.encoding == PcdEncoding::Ascii, std::move(points)});
+  }
+  return warningsOf(sampled, resolution);
+}
+
+std::vector<Eigen::Vector3d> PcdScans::sample(std::size_t index) const {
+  std::vector<Eigen::Vector3d> points = samples_->of(index);
+  if (frame_ == ScanFrame::Sensor)
+    for (Eigen::Vector3d& point : points) point = scans_.at(index).pose * point;
+  return points;
 }
 
 std::vector<std::filesystem::path> listScans(const std::vector<std::filesystem::path>& inputs) {
@@ -154,6 +202,7 @@ FoundScans findScans(const std::vector<std::filesystem::path>& inputs, const std
     const std::vector<Pose> given = posesForScans(readPoseFile(poses), paths);
     for (std::size_t i = 0; i < checked.size(); ++i) checked[i].pose = given[i];
   }
+  if (frame == ScanFrame::Map) dropUnneededRotations(checked, warnings);
   const PoseDiagnosis diagnosis = diagnosePoses(checked);
   if (frame == ScanFrame::Sensor) warnings.insert(warnings.end(), diagnosis.warnings.begin(), diagnosis.warnings.end());
   std::vector<PcdScan> scans;

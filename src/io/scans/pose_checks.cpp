@@ -77,6 +77,22 @@ ScanPose scanPose(const PcdReader& reader) {
   return {reader.path(), reader.header().viewpoint, reader.fingerprint()};
 }
 
+void dropUnneededRotations(std::vector<ScanPose>& scans, std::vector<std::string>& warnings) {
+  std::size_t dropped = 0;
+  std::string first;
+  for (ScanPose& scan : scans) {
+    const std::string fault = poseFault(scan.pose);
+    if (fault.empty()) continue;
+    if (dropped++ == 0) first = scan.path.string() + ": " + fault;
+    scan.pose.rotation = Pose::Rotation::Identity();
+    if (!scan.pose.translation.allFinite()) scan.pose.translation.setZero();
+  }
+  if (dropped == 0) return;
+  const std::string more = dropped > 1 ? " (and " + std::to_string(dropped - 1) + " more)" : "";
+  warnings.push_back(first + more +
+                     "; only the position in VIEWPOINT is used, because the points are in the map frame");
+}
+
 PoseDiagnosis diagnosePoses(const std::vector<ScanPose>& scans) {
   for (const ScanPose& scan : scans)
     if (const std::string fault = poseFault(scan.pose); !fault.empty()) throw FileError(scan.path, fault);

@@ -22,6 +22,10 @@ struct ScanPose {
 /// few kilobytes of the file.
 ScanPose scanPose(const PcdReader& reader);
 
+/// For points that are in the map frame: replaces rotations that are not valid by the identity, and positions that are
+/// not finite by the origin, because such points need no pose. Adds one warning if that happens.
+void dropUnneededRotations(std::vector<ScanPose>& scans, std::vector<std::string>& warnings);
+
 struct PoseDiagnosis {
   std::vector<std::string> warnings;  ///< one or two sentences each, with file names and what to do
 };

@@ -9,6 +9,7 @@
 
 #include "io/files/mapped_file.h"
 #include "io/files/text.h"
+#include "io/scans/scan_names.h"
 
 namespace gaussmap {
 using namespace detail;
@@ -23,6 +24,12 @@ constexpr double kRotationTolerance = 1e-3;
 
 std::string fileName(const PoseFile::Entry& entry) {
   return std::filesystem::path(entry.name).filename().string();
+}
+
+/// Returns the last folder and the file name: 000000/cloud.pcd.
+std::string folderAndFileName(const std::filesystem::path& path) {
+  const std::filesystem::path normal = path.lexically_normal();
+  return (normal.parent_path().filename() / normal.filename()).string();
 }
 
 class PoseFileParser {
@@ -113,12 +120,13 @@ class PoseFileParser {
   }
 
   void requireDifferentNames(const PoseFile& file) {
-    // Names are compared without folders, because scans are looked up without folders.
+    // Names are compared with their last folder, as in 000000/cloud.pcd.
     std::unordered_map<std::string, std::size_t> lines;
     for (const PoseFile::Entry& entry : file.entries) {
-      const auto [first, is_new] = lines.emplace(fileName(entry), entry.line);
+      const auto [first, is_new] = lines.emplace(folderAndFileName(entry.name), entry.line);
       line_ = entry.line;
-      if (!is_new) fail(quote(fileName(entry)) + " already has a pose in line " + std::to_string(first->second));
+      if (!is_new)
+        fail(quote(folderAndFileName(entry.name)) + " already has a pose in line " + std::to_string(first->second));
     }
   }
 
@@ -132,15 +140,24 @@ class PoseFileParser {
 class NameIndex {
  public:
   explicit NameIndex(const PoseFile& file) {
-    for (const PoseFile::Entry& entry : file.entries) entries_.emplace(fileName(entry), &entry);
+    for (const PoseFile::Entry& entry : file.entries) {
+      by_folder_.emplace(folderAndFileName(entry.name), &entry);
+      const auto [place, is_new] = entries_.emplace(fileName(entry), &entry);
+      if (!is_new) place->second = nullptr;  // only the folders tell these entries apart
+    }
   }
+  /// Finds the entry with the name of the folder and the file, of the file, or of the folder (000000/cloud.pcd).
   const PoseFile::Entry* find(const std::filesystem::path& scan) const {
-    for (const std::filesystem::path& name : {scan.filename(), scan.stem()})
-      if (const auto found = entries_.find(name.string()); found != entries_.end()) return found->second;
+    if (const auto found = by_folder_.find(folderAndFileName(scan)); found != by_folder_.end()) return found->second;
+    for (const std::filesystem::path& name : {scan.filename(), scan.stem(), std::filesystem::path(scanStem(scan)),
+                                              scan.lexically_normal().parent_path().filename()})
+      if (const auto found = entries_.find(name.string()); found != entries_.end() && found->second != nullptr)
+        return found->second;
     return nullptr;
   }
 
  private:
+  std::unordered_map<std::string, const PoseFile::Entry*> by_folder_;
   std::unordered_map<std::string, const PoseFile::Entry*> entries_;
 };
 
@@ -150,7 +167,7 @@ std::vector<Pose> posesByName(const PoseFile& file, const NameIndex& index,
   std::unordered_map<const PoseFile::Entry*, std::filesystem::path> users;
   for (const std::filesystem::path& scan : scans) {
     const PoseFile::Entry* const entry = index.find(scan);
-    if (!entry) throw FileError(file.path, "no pose for the scan " + scan.filename().string());
+    if (!entry) throw FileError(file.path, "no pose for the scan " + folderAndFileName(scan));
     const auto [user, is_new] = users.emplace(entry, scan);
     if (!is_new)
       throw FileError(file.path, "line " + std::to_string(entry->line) + ": " + quote(entry->name) + " names both " +

@@ -2,6 +2,7 @@
 #include "io/scans/scan_names.h"
 
 #include <algorithm>
+#include <set>
 #include <string_view>
 
 namespace gaussmap::detail {
@@ -21,12 +22,57 @@ std::string_view takeNumber(std::string_view& rest) {
   return digits;
 }
 
+std::string lowerExtension(const std::filesystem::path& name) {
+  std::string extension = name.extension().string();
+  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return extension;
+}
+
+/// Removes the extension .gz of a name like scan.pcd.gz.
+std::filesystem::path withoutGz(const std::filesystem::path& name) {
+  return lowerExtension(name) == ".gz" && lowerExtension(name.stem()) == ".pcd" ? name.stem() : name;
+}
+
+/// Returns the name of the folder of a scan; empty if it has none.
+std::filesystem::path folderName(const std::filesystem::path& scan) {
+  const std::filesystem::path folder = scan.lexically_normal().parent_path().filename();
+  return folder == "." || folder == ".." ? std::filesystem::path() : folder;
+}
+
 }  // namespace
 
 bool isScanName(const std::filesystem::path& name) {
-  std::string extension = name.extension().string();
-  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return extension == ".pcd" && name.string().front() != '.';
+  return lowerExtension(withoutGz(name)) == ".pcd" && name.string().front() != '.';
+}
+
+std::string scanStem(const std::filesystem::path& scan) {
+  const std::filesystem::path name = withoutGz(scan.filename());
+  return lowerExtension(name) == ".pcd" ? name.stem().string() : name.string();
+}
+
+std::vector<std::filesystem::path> scanCopies(const std::vector<std::filesystem::path>& scans) {
+  std::set<std::filesystem::path> names;
+  for (const std::filesystem::path& scan : scans) names.insert(withoutGz(scan.filename()));
+  std::vector<std::filesystem::path> copies;
+  copies.reserve(scans.size());
+  for (const std::filesystem::path& scan : scans) {
+    const std::filesystem::path name = withoutGz(scan.filename()), folder = folderName(scan);
+    copies.push_back(names.size() == scans.size() || folder.empty() ? name : folder / name);
+  }
+  return copies;
+}
+
+std::vector<std::string> scanNames(const std::vector<std::filesystem::path>& scans) {
+  std::set<std::filesystem::path> files;
+  for (const std::filesystem::path& scan : scans) files.insert(scan.filename());
+  std::vector<std::string> names;
+  names.reserve(scans.size());
+  for (const std::filesystem::path& scan : scans) {
+    const std::filesystem::path folder = folderName(scan);
+    const bool is_enough = files.size() == scans.size() || folder.empty();
+    names.push_back((is_enough ? scan.filename() : folder / scan.filename()).string());
+  }
+  return names;
 }
 
 bool naturalLess(const std::string& a, const std::string& b) {

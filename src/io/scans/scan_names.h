@@ -3,12 +3,26 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
+
 #include "gaussmap/version.h"
 
 namespace gaussmap::detail {
 
 /// Returns true if listScans() treats a file with this name in a directory as a scan.
 GAUSSMAP_API bool isScanName(const std::filesystem::path& name);
+
+/// Returns the name of a scan without folders, without .gz and without .pcd.
+GAUSSMAP_API std::string scanStem(const std::filesystem::path& scan);
+
+/// Returns the path below its folder under which a copy of each scan can be written, always with the extension of an
+/// uncompressed file: cloud.pcd for cloud.pcd.gz. If several scans have the same file name, as in 000000/cloud.pcd and
+/// 000001/cloud.pcd, the path of all scans starts with the name of the folder.
+GAUSSMAP_API std::vector<std::filesystem::path> scanCopies(const std::vector<std::filesystem::path>& scans);
+
+/// Returns the name by which each scan can be told from the others: its file name, or 000000/cloud.pcd if several scans
+/// have the same file name.
+GAUSSMAP_API std::vector<std::string> scanNames(const std::vector<std::filesystem::path>& scans);
 
 /// Returns true if a comes before b in natural order: numbers in names are compared by value, for example
 /// scan2 before scan10.

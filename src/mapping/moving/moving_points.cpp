@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/accept_points.h"
 #include "core/parallel.h"
 #include "gaussmap/core/scans.h"
 #include "gaussmap/mapping/build.h"
@@ -29,6 +30,7 @@ constexpr int kRatio = 6, kScales = 3;  // the coarser scales are used only for 
 struct MovingPoints::State {
   std::shared_ptr<const Scans> scans;
   MovingPointOptions options;
+  PointLimits limits;
   PointCounts counts;
   GaussianMap<3> map;
   ScanEvidence evidence;
@@ -39,8 +41,9 @@ struct MovingPoints::State {
   /// built without the point.
   std::optional<std::size_t> cellOf(const Scan& scan, std::size_t i, Eigen::Vector3d& in_map) const {
     const Eigen::Vector3d& point = scan.points[i];
-    if (!isReturn(point) || point.norm() > options.evidence.max_range) return std::nullopt;
+    if (!limits.isInRange(point)) return std::nullopt;
     in_map = scan.pose * point;
+    if (!limits.isInside(in_map)) return std::nullopt;
     return map.find(map.grid().keyOf(in_map), 0);
   }
 
@@ -85,6 +88,7 @@ MovingPoints::MovingPoints(std::shared_ptr<const Scans> scans, const MovingPoint
   checkOptions(options.shared, options.resolution);
   state.scans = std::move(scans);
   state.options = options;
+  state.limits = limitsOf(options.evidence);
   const ScanEvidenceOptions& input = options.evidence;
   const auto report = [&](MovingPointStep step) -> std::function<void(std::size_t)> {
     if (!progress) return {};
@@ -92,10 +96,10 @@ MovingPoints::MovingPoints(std::shared_ptr<const Scans> scans, const MovingPoint
   };
 
   const auto counting = report(MovingPointStep::Counting);
-  AccumulatedScans accumulated = accumulateScans(*state.scans, {options.resolution, input.max_range, input.threads},
-                                                 [&](const AccumulateProgress& counted) {
-                                                   if (counting) counting(counted.scans_done);
-                                                 });
+  const AccumulateOptions reading{options.resolution, input.max_range, input.threads, input.min_range, input.crop};
+  AccumulatedScans accumulated = accumulateScans(*state.scans, reading, [&](const AccumulateProgress& counted) {
+    if (counting) counting(counted.scans_done);
+  });
   state.counts = accumulated.counts;
   state.map = build<3>(accumulated.moments, grid);
   state.evidence = gatherEvidence(state.map, *state.scans, input, report(MovingPointStep::Looking));

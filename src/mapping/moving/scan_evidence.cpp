@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "core/accept_points.h"
 #include "core/check.h"
 #include "core/parallel.h"
 #include "gaussmap/core/scans.h"
@@ -20,11 +21,13 @@ struct OneScan {
   VisitCounts counts;
 };
 
-std::vector<std::size_t> cellsOf(const Scan& scan, const GaussianMap<3>& map, double max_range) {
+std::vector<std::size_t> cellsOf(const Scan& scan, const GaussianMap<3>& map, const PointLimits& limits) {
   std::vector<std::size_t> cells;
   for (const Eigen::Vector3d& point : scan.points) {
-    if (!isReturn(point) || point.norm() > max_range) continue;
-    const CellKey<3> key = map.grid().keyOf(scan.pose * point);
+    if (!limits.isInRange(point)) continue;
+    const Eigen::Vector3d in_map = scan.pose * point;
+    if (!limits.isInside(in_map)) continue;
+    const CellKey<3> key = map.grid().keyOf(in_map);
     if (!cells.empty() && map.scale(0).keys[cells.back()] == key) continue;
     if (const auto cell = map.find(key, 0)) cells.push_back(*cell);
   }
@@ -36,7 +39,7 @@ std::vector<std::size_t> cellsOf(const Scan& scan, const GaussianMap<3>& map, do
 OneScan lookAround(const GaussianMap<3>& map, const std::vector<Eigen::Vector3d>& means, const Scan& scan,
                    const ScanEvidenceOptions& options) {
   OneScan result;
-  result.hits = cellsOf(scan, map, options.max_range);
+  result.hits = cellsOf(scan, map, limitsOf(options));
   const std::optional<Projection> projection =
       options.projection ? options.projection : findProjection(scan.points, scan.columns);
   if (!projection) return result;
@@ -60,7 +63,7 @@ std::vector<Eigen::Vector3d> finestMeans(const GaussianMap<3>& map) {
 }  // namespace
 
 void checkOptions(const ScanEvidenceOptions& options) {
-  require(options.max_range >= 0.0, "max_range", options.max_range, "must not be negative");
+  checkLimits(limitsOf(options));
   require(options.visibility.tolerance >= 0.0, "tolerance", options.visibility.tolerance, "must not be negative");
   require(options.visibility.clearance >= 0.0, "clearance", options.visibility.clearance, "must not be negative");
   if (options.projection) checkProjection(*options.projection);

@@ -28,7 +28,7 @@ void checkOptions(const OnlineOptions& options) {
   require(options.occupancy_every >= 1, "occupancy_every", options.occupancy_every, "must be at least 1");
   require(options.look_back >= 0, "look_back", options.look_back, "must not be negative");
   require(options.refine_every >= 0, "refine_every", options.refine_every, "must not be negative");
-  require(options.max_range >= 0.0, "max_range", options.max_range, "must not be negative");
+  checkLimits(limitsOf(options));
   require(options.budget >= 1.0, "budget", options.budget, "must be at least 1");
   MovingCellOptions objects;
   objects.occupancy = options.occupancy;
@@ -152,7 +152,16 @@ OnlineStatistics OnlineMapper<D>::add(Scan scan) {
   const OnlineOptions& options = state.options;
   OnlineStatistics statistics;
   StopWatch watch;
-  statistics.points = dropPoints(options.max_range, scan);
+  const PointLimits limits = limitsOf(options);
+  Scan beams;  // what the range image shows: also points that are too near or outside the box
+  const bool differs = limits.min_range > 0.0 || limits.crops;
+  if (differs) {
+    beams = scan;
+    PointLimits far;
+    far.max_range = limits.max_range;
+    dropPoints(far, beams);
+  }
+  statistics.points = dropPoints(limits, scan);
   OnlineScan<D> now;
   now.number = state.scans;
   now.pose = scan.pose;
@@ -166,7 +175,11 @@ OnlineStatistics OnlineMapper<D>::add(Scan scan) {
   const bool look_around = now.number % static_cast<std::uint32_t>(options.occupancy_every) == 0;
   countHits(state.cells, now, look_around ? now.touched : now.new_cells, options);
   std::optional<RangeImage> image;
-  if (look_around || options.look_back > 0) image = state.imageOf(scan, now.points.size());
+  if (look_around || options.look_back > 0) {
+    const Scan& shown = differs ? beams : scan;
+    const auto returns = std::count_if(shown.points.begin(), shown.points.end(), isReturn);
+    image = state.imageOf(shown, static_cast<std::size_t>(returns));
+  }
   if (image) {
     SensorView view(*std::move(image), scan.pose);
     if (options.no_return_is_free) view.image.noReturnIsFree(*options.no_return_is_free);

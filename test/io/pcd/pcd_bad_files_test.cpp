@@ -89,7 +89,9 @@ TEST_F(BadPcdFiles, AnUnreadableFileIsRefused) {
 
 TEST_F(BadPcdFiles, FieldsThatAMapCannotUseAreRefused) {
   expectHeaderRefused("FIELDS x y z", "FIELDS x y w", {"line 3", "'z'"});
-  expectHeaderRefused("FIELDS x y z", "FIELDS X Y Z", {"line 3", "'x'", "lower case"});
+  expectHeaderRefused("FIELDS x y z", "FIELDS X Y W", {"line 3", "'z'"});
+  expectHeaderRefused("FIELDS x y z", "FIELDS X y z", {"line 3", "'x'"});
+  expectHeaderRefused("FIELDS x y z", "FIELDS X Y Y", {"line 3", "'y' occurs twice"});
   expectHeaderRefused("FIELDS x y z", "FIELDS x y y", {"line 3", "'y' occurs twice"});
   expectHeaderRefused("FIELDS x y z", "FIELDS", {"line 4", "0 FIELDS"});
   expectHeaderRefused("FIELDS x y z\n", "", {"no line FIELDS"});
@@ -106,7 +108,7 @@ TEST_F(BadPcdFiles, LinesThatDoNotFitEachOtherAreRefused) {
   expectHeaderRefused("TYPE F F F", "TYPE F F D", {"line 5", "'D'"});
   expectHeaderRefused("TYPE F F F\n", "", {"no line TYPE"});
   expectHeaderRefused("COUNT 1 1 1", "COUNT 1", {"line 6", "1 entries for 3"});
-  expectHeaderRefused("COUNT 1 1 1", "COUNT 1 1 0", {"line 6", "COUNT of field 'z' is 0"});
+  expectHeaderRefused("COUNT 1 1 1", "COUNT 1 1 0", {"line 6", "z has COUNT 0 instead of 1"});
   expectHeaderRefused("POINTS 1", "POINTS 2", {"line 10", "POINTS is 2"});
   expectHeaderRefused("POINTS 1", "POINTS 1\nPOINTS 1", {"line 11", "second line POINTS"});
   expectHeaderRefused("VERSION 0.7", "VERSION 0.8", {"line 2", "'0.8'"});

@@ -171,7 +171,7 @@ TEST_F(PcdRecordsTest, MoveToTheMapAndTurnTheirNormals) {
   Pose pose;
   pose.translation = {10, 20, 30};
   pose.rotation = Pose::Rotation(std::sqrt(0.5), 0, 0, std::sqrt(0.5));
-  moveToMap(records, pose);
+  moveToMap(records, pose, 1.0);
   EXPECT_NEAR(valueOf<float>(records, "x", 0), 8.0, 1e-6);
   EXPECT_NEAR(valueOf<double>(records, "y", 0), 21.0, 1e-12);
   EXPECT_NEAR(valueOf<float>(records, "z", 0), 33.0, 1e-6);
@@ -189,7 +189,7 @@ TEST_F(PcdRecordsTest, LeaveNormalsOfUnknownTypesAlone) {
       body);
   Pose pose;
   pose.rotation = Pose::Rotation(0, 1, 0, 0);
-  moveToMap(records, pose);
+  moveToMap(records, pose, 1.0);
   EXPECT_EQ(valueOf<float>(records, "y", 0), -2.0f);
   EXPECT_EQ(textOf(records.bytes).substr(12), "abcdef");
 }
@@ -213,7 +213,7 @@ TEST_F(PcdRecordsTest, MayBeNone) {
     PcdRecords none = read(xyzHeader(0, encoding));
     EXPECT_EQ(none.size(), 0u);
     keepOnly(none, {});
-    moveToMap(none, Pose());
+    moveToMap(none, Pose(), 0.0);
     append(none, none);
     const PcdRecords after = writtenAndRead(none);
     EXPECT_EQ(after.size(), 0u);

@@ -129,7 +129,7 @@ TEST(PoseFile, TakesTimesThatNameAllScansAsNames) {
 
 TEST(PoseFile, RefusesAnAmbiguousName) {
   expectRefused("a.pcd 1 0 0 0 0 0 1\na.pcd 2 0 0 0 0 0 1\n", {"line 2", "'a.pcd'", "line 1"});
-  expectRefused("one/a.pcd 1 0 0 0 0 0 1\ntwo/a.pcd 2 0 0 0 0 0 1\n", {"line 2", "'a.pcd'"});
+  expectRefused("one/a.pcd 1 0 0 0 0 0 1\n../one/a.pcd 2 0 0 0 0 0 1\n", {"line 2", "'one/a.pcd'"});
 }
 
 TEST(PoseFile, RefusesWhatIsNoFile) {

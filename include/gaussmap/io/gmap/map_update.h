@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -24,12 +25,21 @@ struct UpdateOptions {
   int threads = 0;                              ///< 0 = all cores
 };
 
+/// So many points of two different scans nearly never have the same exact sums in a cell, see MapUpdate.
+inline constexpr std::int64_t kDensePoints = 3;
+
 /// The result of updateMap().
 struct MapUpdate {
   /// Number of cells of the whole map after the update, per scale, finest first.
   std::vector<std::size_t> cells, gaussians;  ///< number of Gaussians of the whole map, per scale, finest first
   std::size_t tiles_written = 0;              ///< number of changed tiles; the others keep their bytes
   std::size_t tiles = 0;                      ///< number of tiles in the file
+  std::size_t cells_added_to = 0;             ///< finest cells with new points
+  /// Of these, the cells that held exactly the new points before: their exact sums are equal, or a whole multiple. Many
+  /// such cells mean that a scan is added again.
+  std::size_t cells_repeated = 0;
+  std::size_t dense_cells = 0;           ///< finest cells with at least kDensePoints new points each
+  std::size_t dense_cells_repeated = 0;  ///< of these, the cells that held exactly the new points before
 };
 
 /// Adds points to a map file. It decodes only the tiles that hold a coarsest cell with new points or cells below it. It

@@ -13,9 +13,9 @@
 
 namespace gaussmap {
 
-/// One Gaussian as stored in a PCD file and in PCL's PointGaussian.
+/// One Gaussian as stored in a PCD file and in PCL's PointGaussian. Both store the mean as floats.
 struct GaussianRecord {
-  std::array<float, 3> mean;         ///< x y z [m], relative to GaussianRecords::origin
+  std::array<double, 3> mean;        ///< x y z [m], relative to GaussianRecords::origin
   std::array<float, 6> covariance;   ///< xx xy xz yy yz zz [m^2]
   float weight;                      ///< number of points
   float occupancy;                   ///< log-odds; kMaxOccupancy if the map has no occupancy
@@ -47,7 +47,8 @@ GAUSSMAP_API GaussianMap<3> fromRecords(const GaussianRecords& records);
 
 /// Writes records to a PCD file with the fields of savePcd(). Throws FileError if the file cannot be written.
 GAUSSMAP_API void saveRecordsPcd(const std::filesystem::path& path, const GaussianRecords& records);
-/// Reads records from a PCD file with the fields of savePcd(). Throws FileError if the file is not such a cloud.
+/// Reads records from a PCD file with the fields of savePcd(). x y z can be doubles. Throws FileError if the file is
+/// not such a cloud.
 GAUSSMAP_API GaussianRecords loadRecordsPcd(const std::filesystem::path& path);
 
 /// Options of savePcd().

@@ -30,19 +30,21 @@ enum class PcdEncoding { Ascii, Binary, BinaryCompressed };
 
 /// The header of a PCD file.
 struct GAUSSMAP_API PcdHeader {
-  std::vector<PcdField> fields;  ///< in the order of the file; all names differ, except padding
-  std::size_t width = 0;         ///< points per row
-  std::size_t height = 1;        ///< number of rows; > 1 for an organised cloud
-  std::size_t points = 0;        ///< width * height
-  Pose viewpoint;                ///< the sensor's pose as written; the quaternion is not checked, see poseFault()
-  bool has_viewpoint = false;    ///< false: the file has no VIEWPOINT, and `viewpoint` is the identity
+  /// The fields in the order of the file, without those of COUNT 0. x, y and z occur once, in lower case even if the
+  /// file has X, Y and Z. Other names can occur twice.
+  std::vector<PcdField> fields;
+  std::size_t width = 0;       ///< points per row
+  std::size_t height = 1;      ///< number of rows; > 1 for an organised cloud
+  std::size_t points = 0;      ///< width * height
+  Pose viewpoint;              ///< the sensor's pose as written; the quaternion is not checked, see poseFault()
+  bool has_viewpoint = false;  ///< false: the file has no VIEWPOINT, and `viewpoint` is the identity
   PcdEncoding encoding = PcdEncoding::Ascii;  ///< encoding of the points
   std::size_t record_size = 0;                ///< bytes per point in DATA binary
   std::size_t columns = 0;                    ///< numbers per line in DATA ascii
   std::size_t data_offset = 0;                ///< bytes before the data
   std::size_t data_line = 0;                  ///< number of the first line of data; the first line of the file is 1
 
-  /// Returns the field of this name, or nullptr if there is none. Padding is not found.
+  /// Returns the first field of this name, or nullptr if there is none. Padding is not found.
   const PcdField* find(const std::string& name) const;
 };
 
@@ -52,13 +54,13 @@ struct PcdColumn {
   std::size_t element = 0;  ///< in [0, count)
 };
 
-/// Reads one PCD file (versions 0.5 to 0.7; ascii, binary, binary_compressed). x, y and z can be floats or doubles at
-/// any place of a record.
+/// Reads one PCD file (versions 0.5 to 0.7; ascii, binary, binary_compressed), which can be compressed with gzip. x, y
+/// and z can be floats or doubles at any place of a record.
 ///
-/// No file can make the reader crash, hang, or use more memory than a small multiple of the file's size. Opening reads
-/// the header and checks it against the size of the file, but reads no points. Thousands of scans can therefore be open
-/// at the same time. The file must not be truncated while it is open: reading can then raise the signal SIGBUS or
-/// return zeros; see requireWhole().
+/// No file can make the reader crash, hang, or use more memory than a small multiple of the file's size; a gzip file
+/// can expand to 16 MiB and 100 times its size. Opening reads the header and checks it against the size of the file,
+/// but reads no points. Thousands of scans can therefore be open at the same time. The file must not be truncated while
+/// it is open: reading can then raise the signal SIGBUS or return zeros; see requireWhole().
 class GAUSSMAP_API PcdReader {
  public:
   /// Opens a file. Throws FileError if the file is not usable; the message gives the line of the header or the byte of
@@ -101,8 +103,8 @@ class GAUSSMAP_API PcdReader {
   /// Returns all points with all their fields, size() * header().record_size bytes as in DATA binary. A program can use
   /// this to copy fields that it does not know.
   ///
-  /// Integers of 8 bytes beyond 2^53 are rounded if the file is ascii. Throws FileError if the data are damaged, or if
-  /// a field of an ascii file has an unknown type.
+  /// Integers of 8 bytes are exact, also if the file is ascii. Throws FileError if the data are damaged, or if a field
+  /// of an ascii file has an unknown type.
   std::vector<char> records() const;
 
   /// Returns a hash by which different clouds can be distinguished. It is computed from the number of points and from

@@ -14,6 +14,10 @@
 
 namespace gaussmap {
 
+namespace detail {
+class CoordinateSamples;
+}
+
 /// A PCD file and the pose of its sensor.
 struct PcdScan {
   std::filesystem::path path;                 ///< the file
@@ -46,17 +50,24 @@ class GAUSSMAP_API PcdScans : public Scans {
   /// Returns a reader of a file, for access to its header, records and columns. Throws like open().
   PcdReader reader(std::size_t index) const;
 
+  /// Returns warnings about the coordinates of the points that were read so far: floats that are too coarse for cells
+  /// of this side [m], and coordinates that look like millimetres. Call it after the scans have been read.
+  std::vector<std::string> coordinateWarnings(double resolution) const;
+  /// Returns up to about a thousand of the points of a scan that were read so far [m, map frame].
+  std::vector<Eigen::Vector3d> sample(std::size_t index) const;
+
  private:
   std::vector<PcdScan> scans_;
   std::vector<PcdReader> opened_;  // of the first scans: the number of memory maps per process is limited
   ScanFrame frame_;
+  std::shared_ptr<detail::CoordinateSamples> samples_;  // of the points that were read
 };
 
 /// Returns the files of a list of inputs, in the order of the inputs.
 ///
-/// A file is listed unchanged. A directory is replaced by the *.pcd files in it, in natural order. The search is not
-/// recursive, ignores case, and skips hidden files. Throws FileError if an input does not exist or a directory has no
-/// such file.
+/// A file is listed unchanged. A directory is replaced by the *.pcd and *.pcd.gz files in it, in natural order. The
+/// search is not recursive, ignores case, and skips hidden files. Throws FileError if an input does not exist or a
+/// directory has no such file.
 GAUSSMAP_API std::vector<std::filesystem::path> listScans(const std::vector<std::filesystem::path>& inputs);
 
 /// Scans with poses, and the warnings about them.

@@ -25,6 +25,10 @@ struct GAUSSMAP_API ScanEvidenceOptions {
   std::optional<double> no_return_is_free;  ///< see RangeImage::noReturnIsFree(); std::nullopt: not called
   VisibilityOptions visibility;             ///< when a beam passes through a cell
   int threads = 0;                          ///< 0 = all cores
+  /// Points nearer to the sensor hit no cell [m]. They still hide what is behind them.
+  double min_range = 0.0;
+  /// Points outside this box hit no cell [m, map frame]. Their beams still pass through cells.
+  std::optional<Box<3>> crop = std::nullopt;
 };
 
 /// The observations of the finest cells of a map by all scans together. For each scan, coarse cells are tested first.
@@ -110,8 +114,9 @@ class GAUSSMAP_API MovingPoints {
 
   /// Returns one flag per point of scan `index`, in the order of the points: true if the point is moving.
   ///
-  /// Points that are not returns or lie beyond max_range are not moving. The function reads the scan again and is
-  /// thread-safe. Throws FileError if a file is damaged, and std::out_of_range if there is no such scan.
+  /// Points that are not returns, or lie outside the range limits or the box, are not moving. The function reads the
+  /// scan again and is thread-safe. Throws FileError if a file is damaged, and std::out_of_range if there is no such
+  /// scan.
   std::vector<bool> inScan(std::size_t index) const;
 
  private:

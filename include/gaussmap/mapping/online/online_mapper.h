@@ -36,7 +36,9 @@ enum class OccupancySamples {
 struct GAUSSMAP_API OnlineOptions {
   MapOptions map;                                              ///< cells of the map
   double max_range = std::numeric_limits<double>::infinity();  ///< points farther from the sensor are ignored [m]
-  LearningRate learning_rate = LearningRate::SampleMean;       ///< how far a point moves its cluster
+  double min_range = 0.0;  ///< points nearer to the sensor are ignored, but hide what is behind them [m]
+  std::optional<Box<3>> crop = std::nullopt;  ///< points outside this box are ignored, their beams not [m, map frame]
+  LearningRate learning_rate = LearningRate::SampleMean;  ///< how far a point moves its cluster
   double slowest_rate = 5e-4;  ///< eps_min of eq. (5), LearningRate::Occupancy only, in (0, 1]
   double fastest_rate = 5e-2;  ///< eps_max of eq. (5), LearningRate::Occupancy only, in [slowest_rate, 1]
 
@@ -138,7 +140,7 @@ class GAUSSMAP_API OnlineMapper {
   OnlineMapper(OnlineMapper&&) noexcept;
   OnlineMapper& operator=(OnlineMapper&&) noexcept;
 
-  /// Adds one scan to the map. Only returns within max_range are used.
+  /// Adds one scan to the map. Only returns within the range limits and the box are used.
   ///
   /// For D = 2, points are transformed to the map frame and lose their z coordinate. The z axis of the sensor must
   /// therefore be parallel to that of the map, which is not checked. Throws std::out_of_range if a point lies beyond

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/dropped_fields.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "common/report.h"
+
+namespace gaussmap::app {
+namespace {
+
+const std::vector<std::string> kIntensityFields = {"intensity", "intensities", "reflectivity", "reflectance",
+                                                   "remission"};
+const std::vector<std::string> kColourFields = {"rgb", "rgba", "r", "red"};
+
+bool hasField(const PcdHeader& header, const std::vector<std::string>& names, std::string& found) {
+  for (const PcdField& field : header.fields) {
+    std::string lower = field.name;
+    for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    if (std::find(names.begin(), names.end(), lower) == names.end()) continue;
+    found = field.name;
+    return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void noteDroppedFields(const PcdScans& scans) {
+  if (scans.size() == 0) return;
+  const PcdReader reader = scans.reader(0);
+  std::string intensity, colour;
+  const bool has_intensity = hasField(reader.header(), kIntensityFields, intensity);
+  const bool has_colour = hasField(reader.header(), kColourFields, colour);
+  if (!has_intensity && !has_colour) return;
+  const std::string both = has_intensity && has_colour ? " and " : "";
+  note("the map keeps only geometry: the field" + std::string(both.empty() ? " " : "s ") + intensity + both + colour +
+       " of the scans " + (both.empty() ? "is" : "are") + " not in the map");
+}
+
+}  // namespace gaussmap::app
