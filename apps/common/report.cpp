@@ -16,6 +16,10 @@ void warn(const std::string& text) {
   std::cerr << "gaussmap: warning: " << text << '\n';
 }
 
+void note(const std::string& text) {
+  std::cerr << "gaussmap: " << text << '\n';
+}
+
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }

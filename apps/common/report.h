@@ -12,6 +12,8 @@ namespace gaussmap::app {
 
 /// Prints a warning as one line on stderr.
 void warn(const std::string& text);
+/// Prints what was found out about the input as one line on stderr.
+void note(const std::string& text);
 
 /// Time of a steady clock [s].
 double now();
