@@ -41,8 +41,7 @@ std::string wayOut(PoseMatch match) {
 
 /// "2 of 6 scans have no pose: a.pcd (no index 3), b.pcd (no index 4)"
 std::string missingText(const MatchedPoses& matched, const std::vector<ScanKey>& scans) {
-  constexpr std::size_t kNamed = 3;
-  const std::size_t count = matched.missing.size();
+  const std::size_t count = matched.missing.size(), kNamed = count < scans.size() ? 3 : 1;
   std::string text = std::to_string(count) + " of " + countText(scans.size(), "scan") +
                      (count == 1 ? " has no pose: " : " have no pose: ");
   for (std::size_t i = 0; i < std::min(count, kNamed); ++i)

@@ -178,7 +178,7 @@ void matchByTime(const PoseFile& file, const std::vector<ScanKey>& scans, const 
     unit = ", times in names in " + unitName(chosen);
   }
   poses.match(times, scans, options, matched);
-  matched.how += unit;
+  if (matched.missing.size() < times.size()) matched.how += unit;
 }
 
 PoseMatch chooseMatch(const PoseFile& file, const std::vector<ScanKey>& scans, const ScanNumbers& numbers) {

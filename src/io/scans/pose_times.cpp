@@ -196,8 +196,8 @@ void PoseTimes::match(const std::vector<Instant>& times, const std::vector<ScanK
   }
   if (matched.missing.size() == times.size() && !times.empty()) {
     const auto [low, high] = std::minmax_element(times.begin(), times.end());
-    matched.how += "; the scans are from " + timeText(*low) + " to " + timeText(*high) + ", the poses from " +
-                   timeText(time(0)) + " to " + timeText(time(order_.size() - 1));
+    matched.how = "by time; the scans are from " + timeText(*low) + " to " + timeText(*high) + ", the poses from " +
+                  timeText(time(0)) + " to " + timeText(time(order_.size() - 1));
   }
 }
 
