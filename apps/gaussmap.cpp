@@ -54,6 +54,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer("Example: gaussmap pcd2map scans/ -o street.gmap && gaussmap info street.gmap");
   addPcd2map(app);
+  addScans(app);
   addRefine(app);
   addCompress(app);
   addRegister(app);

@@ -9,6 +9,7 @@ namespace gaussmap::app {
 
 // One function per command. main() calls each function once.
 void addPcd2map(CLI::App& app);
+void addScans(CLI::App& app);
 void addRefine(CLI::App& app);
 void addCompress(CLI::App& app);
 void addRegister(CLI::App& app);

@@ -16,9 +16,9 @@ namespace {
 
 const Help kPcd2mapHelp = {
     "Build a map from PCD scans", "gaussmap pcd2map scans/*.pcd -o street.gmap --resolution 0.2 --budget 3",
-    R"(The pose of a scan is the VIEWPOINT of its file, or comes from --poses. A file of poses has one line per scan:
-TUM (t x y z qx qy qz qw), KITTI (12 numbers), or the name of the scan and its pose. With --frame map, the points
-are already in the map frame.
+    R"(The pose of a scan is the VIEWPOINT of its file, or comes from --poses: TUM (t x y z qx qy qz qw), KITTI
+(12 numbers), CSV with a header line, and others. Poses are matched to scans by name, time or number, else by order.
+gaussmap scans shows the result. With --frame map, the points are already in the map frame.
 
 --update adds scans to a map file and writes only the tiles that change. The finest scale then equals that of a map
 of all scans. Coarse cells with new points are rebuilt within --budget (default: the budget of the last refinement,
@@ -35,6 +35,7 @@ void run(const Pcd2mapOptions& options) {
   }
   std::vector<std::filesystem::path> inputs = listScans({options.input.paths.begin(), options.input.paths.end()});
   if (!options.input.poses.empty()) inputs.emplace_back(options.input.poses);
+  if (!options.input.extrinsic.empty()) inputs.emplace_back(options.input.extrinsic);
   MapTask task({"", options.output, options.budget.refine.threads, options.json}, inputs);
   checkBudget(options.budget);
   checkOnline(options.online, options.budget, options.output, inputs);

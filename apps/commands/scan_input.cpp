@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "commands/scan_input.h"
 
+#include <charconv>
+#include <map>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -15,14 +18,39 @@ void addScanPaths(Command& command, ScanInput& input) {
   command.files({"scans"}, {".pcd", ".pcd.gz"});
 }
 
+void addPoseOptions(Command& command, ScanInput& input) {
+  command.text(
+      "--poses", input.poses,
+      "file with the sensor poses in the map frame (TUM, KITTI, CSV ...); default: the VIEWPOINT of each scan");
+  command
+      .text("--pose-format", input.pose_format,
+            R"(auto, tum, tum-wxyz, kitti, matrix4, euroc, xyzrpy-deg, xyzrpy-rad, g2o, csv (a header line names the
+            columns), or the columns in quotes: "time x y z qw qx qy qz")")
+      .rare();
+  command
+      .choice("--match-poses", input.match_poses, {"auto", "name", "index", "time", "order"},
+              "how scans and poses belong together")
+      .rare();
+  command
+      .number("--max-time-gap", input.max_time_gap, 0.0, 1e9,
+              "largest time between a scan and its pose [s]; default: half of the median time between scans")
+      .rare();
+  command.flag("--interpolate", input.interpolate, "interpolate between the two poses nearest in time").rare();
+  command.flag("--skip-without-pose", input.skip_without_pose, "leave out scans without a pose").rare();
+  command
+      .text("--extrinsic", input.extrinsic,
+            R"(pose of the sensor in the frame that the poses describe: file, or "x y z qx qy qz qw"; default: calib.txt
+            beside a KITTI pose file, if there is one; none: no extrinsic)")
+      .rare();
+  command.files({"--poses", "--extrinsic"});
+}
+
 void addScanOptions(Command& command, ScanInput& input) {
-  command.text("--poses", input.poses,
-               "file with the sensor poses in the map frame (TUM or KITTI); default: the VIEWPOINT of each scan");
+  addPoseOptions(command, input);
   command.choice("--frame", input.frame, {"sensor", "map"}, "frame of the points in the files");
   addRangeOptions(command, input);
   command.numbers("--crop", input.crop, 4, 6, -1e12, 1e12,
                   "use only points in this box of the map frame: x0 y0 x1 y1, or x0 y0 z0 x1 y1 z1 [m]");
-  command.files({"--poses"});
 }
 
 void addRangeOptions(Command& command, ScanInput& input) {
@@ -32,9 +60,85 @@ void addRangeOptions(Command& command, ScanInput& input) {
                  "drop points nearer to the sensor than this [m], for example the robot itself");
 }
 
+namespace {
+
+const std::map<std::string, PoseFormat> kPoseFormats = {{"auto", PoseFormat::Automatic},
+                                                        {"tum", PoseFormat::Tum},
+                                                        {"tum-wxyz", PoseFormat::Table},
+                                                        {"kitti", PoseFormat::Kitti},
+                                                        {"matrix4", PoseFormat::Matrix4},
+                                                        {"euroc", PoseFormat::EuRoc},
+                                                        {"xyzrpy-deg", PoseFormat::XyzRpyDegrees},
+                                                        {"xyzrpy-rad", PoseFormat::XyzRpyRadians},
+                                                        {"g2o", PoseFormat::G2o},
+                                                        {"csv", PoseFormat::Table}};
+const std::map<std::string, PoseMatch> kPoseMatches = {{"auto", PoseMatch::Automatic},
+                                                       {"name", PoseMatch::Name},
+                                                       {"index", PoseMatch::Index},
+                                                       {"time", PoseMatch::Time},
+                                                       {"order", PoseMatch::Order}};
+
+void setPoseFormat(const std::string& text, FindScansOptions& options) {
+  const auto known = kPoseFormats.find(text);
+  if (known != kPoseFormats.end()) {
+    options.pose_format = known->second;
+    if (text == "tum-wxyz") options.pose_columns = "key x y z qw qx qy qz";
+    return;
+  }
+  if (text.find_first_of(" ,;\t") == std::string::npos)
+    throw UsageError("--pose-format " + text +
+                     ": expected auto, tum, tum-wxyz, kitti, matrix4, euroc, xyzrpy-deg, xyzrpy-rad, g2o, csv, or the "
+                     "names of the columns in quotes");
+  options.pose_format = PoseFormat::Table;
+  options.pose_columns = text;
+}
+
+Extrinsic extrinsicIn(const std::string& text) {
+  if (text == "none") return {};
+  std::istringstream words(text);
+  std::vector<double> n;
+  for (std::string word; words >> word;) {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size()) return readExtrinsic(text);
+    n.push_back(value);
+  }
+  if (n.size() < 2) return readExtrinsic(text);
+  if (n.size() != 7)
+    throw UsageError("--extrinsic '" + text + "': " + std::to_string(n.size()) +
+                     " numbers found, expected the seven of x y z qx qy qz qw, in quotes, or a file");
+  const Pose pose{{n[0], n[1], n[2]}, Pose::Rotation(n[6], n[3], n[4], n[5])};
+  if (const std::string fault = poseFault(pose); !fault.empty())
+    throw UsageError("--extrinsic '" + text + "': " + fault);
+  Extrinsic extrinsic;
+  extrinsic.pose = normalised(pose);
+  return extrinsic;
+}
+
+}  // namespace
+
+FindScansOptions findOptions(const ScanInput& input) {
+  if (input.poses.empty()) {
+    const auto needsPoses = [](const char* option) { throw UsageError(std::string(option) + ": needs --poses"); };
+    if (input.pose_format != "auto") needsPoses("--pose-format");
+    if (input.match_poses != "auto") needsPoses("--match-poses");
+    if (input.max_time_gap) needsPoses("--max-time-gap");
+    if (input.interpolate) needsPoses("--interpolate");
+    if (input.skip_without_pose) needsPoses("--skip-without-pose");
+  }
+  FindScansOptions options;
+  options.poses = input.poses;
+  setPoseFormat(input.pose_format, options);
+  options.matching = {kPoseMatches.at(input.match_poses), input.max_time_gap, input.interpolate};
+  options.skip_without_pose = input.skip_without_pose;
+  if (!input.extrinsic.empty()) options.extrinsic = extrinsicIn(input.extrinsic);
+  options.frame = input.frame == "map" ? ScanFrame::Map : ScanFrame::Sensor;
+  return options;
+}
+
 PcdScans openScans(const ScanInput& input) {
-  FoundScans found = findScans({input.paths.begin(), input.paths.end()}, input.poses,
-                               input.frame == "map" ? ScanFrame::Map : ScanFrame::Sensor);
+  FoundScans found = findScans({input.paths.begin(), input.paths.end()}, findOptions(input));
+  if (!input.poses.empty()) note(found.poses);
   for (const std::string& warning : found.warnings) warn(warning);
   return std::move(found.scans);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +16,12 @@ namespace gaussmap::app {
 struct ScanInput {
   std::vector<std::string> paths;
   std::string poses;
+  std::string pose_format = "auto";  // a kind of PoseFormat, or the names of the columns
+  std::string match_poses = "auto";
+  std::optional<double> max_time_gap;  // [s]
+  bool interpolate = false;
+  bool skip_without_pose = false;
+  std::string extrinsic;  // file, seven numbers or "none"
   std::string frame = "sensor";
   double max_range = 0.0;  // 0: no limit
   double min_range = 0.0;
@@ -21,12 +29,16 @@ struct ScanInput {
 };
 /// Adds the positional argument of the paths.
 void addScanPaths(Command& command, ScanInput& input);
-/// Adds --poses, --frame, --max-range, --min-range and --crop.
+/// Adds --poses and the options that say how it is read and matched.
+void addPoseOptions(Command& command, ScanInput& input);
+/// Adds the options of poses, --frame, --max-range, --min-range and --crop.
 void addScanOptions(Command& command, ScanInput& input);
 /// Adds --max-range and --min-range.
 void addRangeOptions(Command& command, ScanInput& input);
 
-/// Calls findScans() and prints its warnings on stderr.
+/// Throws UsageError if an option does not make sense.
+FindScansOptions findOptions(const ScanInput& input);
+/// Calls findScans(). Prints its warnings on stderr, and, with a pose file, how the poses were found.
 PcdScans openScans(const ScanInput& input);
 /// Prints warnings about the coordinates that were read, see PcdScans::coordinateWarnings(). Call it after reading.
 void warnOfCoordinates(const PcdScans& scans, double resolution);

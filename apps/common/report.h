@@ -12,7 +12,7 @@ namespace gaussmap::app {
 
 /// Prints a warning as one line on stderr.
 void warn(const std::string& text);
-/// Prints a note as one line on stderr: something that a user may want to know, but that is not wrong.
+/// Prints as one line on stderr what a user may want to know, but what is not wrong.
 void note(const std::string& text);
 
 /// Time of a steady clock [s].

@@ -19,7 +19,7 @@ class RegisterApp : public AppTest {
   static void TearDownTestSuite() { world_.reset(); }
   static std::string world(const std::string& name) { return (world_->path() / name).string(); }
   static std::string scan(int i) { return world("hall/scans/scan0" + std::to_string(i) + ".pcd"); }
-  static Pose truth(std::size_t i) { return readPoseFile(world("hall/trajectory.tum")).entries.at(i).pose; }
+  static Pose truth(std::size_t i) { return readPoseFile(world("hall/trajectory.tum")).entries.at(i).pose.value(); }
 
  private:
   static inline std::unique_ptr<TemporaryDirectory> world_;
@@ -34,7 +34,7 @@ TEST_F(RegisterApp, FindsEveryScanFromTheOneBefore) {
   const PoseFile found = readPoseFile(tum);
   ASSERT_EQ(found.entries.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i)
-    EXPECT_LT((found.entries[i].pose.translation - truth(i).translation).norm(), 0.02) << i;
+    EXPECT_LT((found.entries[i].pose->translation - truth(i).translation).norm(), 0.02) << i;
 }
 
 TEST_F(RegisterApp, TakesAGuess) {

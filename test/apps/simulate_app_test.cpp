@@ -45,8 +45,8 @@ class SimulateApp : public AppTest {
     for (std::size_t i = 0; i < paths.size(); ++i) {
       const PcdReader reader(paths[i]);
       const Pose pose = normalised(reader.header().viewpoint);
-      EXPECT_LT((pose.translation - poses.entries[i].pose.translation).norm(), 1e-6);
-      EXPECT_LT(pose.rotation.angularDistance(poses.entries[i].pose.rotation), 1e-6);
+      EXPECT_LT((pose.translation - poses.entries[i].pose->translation).norm(), 1e-6);
+      EXPECT_LT(pose.rotation.angularDistance(poses.entries[i].pose->rotation), 1e-6);
       for (const Vector<3>& point : pointsOf(reader)) {
         ASSERT_LT(next, truth.size());
         ASSERT_LT((pose * point - truth[next++]).norm(), 2e-5);  // floats up to 80 m

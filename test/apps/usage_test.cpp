@@ -12,7 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::vector<std::string> kCommands = {
-    "pcd2map", "refine", "compress", "register", "finish", "tiles",     "simplify", "merge", "transform", "crop",
+    "pcd2map", "scans",    "refine", "compress", "register", "finish", "tiles",     "simplify", "merge", "transform", "crop",
     "diff",    "clean",  "restore",  "info",     "export", "hausdorff", "simulate", "draw",  "segments"};
 
 TEST_F(Apps, ExplainThemselvesWithAnExample) {

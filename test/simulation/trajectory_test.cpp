@@ -21,8 +21,8 @@ TEST(WriteTum, WritesWhatThePoseReaderReads) {
   ASSERT_EQ(file.entries.size(), trajectory.size());
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
     EXPECT_EQ(std::stod(file.entries[i].name), trajectory[i].time);
-    EXPECT_EQ(file.entries[i].pose.translation, trajectory[i].pose.translation);
-    EXPECT_LT(file.entries[i].pose.rotation.angularDistance(trajectory[i].pose.rotation), 1e-7);
+    EXPECT_EQ(file.entries[i].pose->translation, trajectory[i].pose.translation);
+    EXPECT_LT(file.entries[i].pose->rotation.angularDistance(trajectory[i].pose.rotation), 1e-7);
   }
 }
 

@@ -7,7 +7,7 @@
 #include <system_error>
 #include <utility>
 
-#include "gaussmap/io/scans/pose_file.h"
+#include "io/scans/assign_poses.h"
 #include "io/scans/coordinate_checks.h"
 #include "io/scans/pose_checks.h"
 #include "io/scans/scan_names.h"
@@ -186,8 +186,7 @@ std::vector<std::filesystem::path> listScans(const std::vector<std::filesystem::
   return scans;
 }
 
-FoundScans findScans(const std::vector<std::filesystem::path>& inputs, const std::filesystem::path& poses,
-                     ScanFrame frame) {
+FoundScans findScans(const std::vector<std::filesystem::path>& inputs, const FindScansOptions& options) {
   const std::vector<std::filesystem::path> paths = listScans(inputs);
   std::vector<std::string> warnings;
   warnOfScansGivenTwice(paths, warnings);
@@ -198,17 +197,30 @@ FoundScans findScans(const std::vector<std::filesystem::path>& inputs, const std
     checked.push_back(scanPose(reader));
     if (opened.size() < kMaxOpen) opened.push_back(std::move(reader));
   }
-  if (!poses.empty()) {
-    const std::vector<Pose> given = posesForScans(readPoseFile(poses), paths);
-    for (std::size_t i = 0; i < checked.size(); ++i) checked[i].pose = given[i];
-  }
-  if (frame == ScanFrame::Map) dropUnneededRotations(checked, warnings);
-  const PoseDiagnosis diagnosis = diagnosePoses(checked);
-  if (frame == ScanFrame::Sensor) warnings.insert(warnings.end(), diagnosis.warnings.begin(), diagnosis.warnings.end());
+  AssignedPoses assigned = assignPoses(checked, options);
+  warnings.insert(warnings.end(), assigned.warnings.begin(), assigned.warnings.end());
+  std::vector<PcdReader> kept_readers;
+  std::vector<ScanPose> kept;
   std::vector<PcdScan> scans;
-  scans.reserve(checked.size());
-  for (const ScanPose& scan : checked) scans.push_back({scan.path, normalised(scan.pose)});
-  return {PcdScans(std::move(scans), frame, std::move(opened)), std::move(warnings)};
+  for (std::size_t i = 0; i < checked.size(); ++i) {
+    if (assigned.left_out[i]) continue;
+    kept.push_back(checked[i]);
+    scans.push_back({checked[i].path, Pose(), assigned.times[i]});
+    if (i < opened.size()) kept_readers.push_back(std::move(opened[i]));
+  }
+  if (options.frame == ScanFrame::Map) dropUnneededRotations(kept, warnings);
+  const PoseDiagnosis diagnosis = diagnosePoses(kept);
+  if (options.frame == ScanFrame::Sensor)
+    warnings.insert(warnings.end(), diagnosis.warnings.begin(), diagnosis.warnings.end());
+  for (std::size_t i = 0; i < kept.size(); ++i) scans[i].pose = normalised(kept[i].pose);
+  return {PcdScans(std::move(scans), options.frame, std::move(kept_readers)), std::move(warnings),
+          std::move(assigned.description), std::move(assigned.without_pose)};
+}
+
+FoundScans findScans(const std::vector<std::filesystem::path>& inputs, const std::filesystem::path& poses) {
+  FindScansOptions options;
+  options.poses = poses;
+  return findScans(inputs, options);
 }
 
 }  // namespace gaussmap

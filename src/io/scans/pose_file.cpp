@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gaussmap/io/scans/pose_file.h"
 
-#include <Eigen/LU>
-#include <array>
-#include <cmath>
-#include <sstream>
 #include <unordered_map>
+#include <utility>
 
 #include "io/files/mapped_file.h"
 #include "io/files/text.h"
+#include "io/scans/pose_text.h"
 #include "io/scans/scan_names.h"
 
 namespace gaussmap {
@@ -16,133 +14,114 @@ using namespace detail;
 
 namespace {
 
-enum class Layout { Unknown, Tum, Kitti, NameTum, NameKitti };
-
-constexpr std::size_t kTumNumbers = 7;
-constexpr std::size_t kKittiNumbers = 12;
-constexpr double kRotationTolerance = 1e-3;
-
-std::string fileName(const PoseFile::Entry& entry) {
+std::string nameOfEntry(const PoseFile::Entry& entry) {
   return std::filesystem::path(entry.name).filename().string();
 }
 
-/// Returns the last folder and the file name: 000000/cloud.pcd.
-std::string folderAndFileName(const std::filesystem::path& path) {
-  const std::filesystem::path normal = path.lexically_normal();
-  return (normal.parent_path().filename() / normal.filename()).string();
+/// Returns true if no field of the first line is a number: the line names the columns.
+bool isHeader(const PoseText& text) {
+  const std::vector<std::string_view> fields = fieldsOf(text, text.lines.front().text, false);
+  double ignored = 0.0;
+  std::size_t numbers = 0;
+  for (const std::string_view field : fields) numbers += parseNumber(field, ignored) ? 1 : 0;
+  return numbers == 0 && (fields.size() > 2 || countNames(text.lines.front().text) > 2);
 }
 
-class PoseFileParser {
- public:
-  PoseFileParser(const std::filesystem::path& path, std::string_view text) : path_(path), rest_(text) {}
-
-  PoseFile parse() {
-    PoseFile file;
-    file.path = path_;
-    if (rest_.substr(0, kByteOrderMark.size()) == kByteOrderMark) rest_.remove_prefix(kByteOrderMark.size());
-    for (line_ = 1; !rest_.empty(); ++line_) {
-      const std::string_view text = takeLine(rest_);
-      const std::vector<std::string_view> words = splitWords(text);
-      if (words.empty() || words.front().front() == '#') continue;
-      file.entries.push_back(parseLine(words));
-    }
-    file.by_name = layout_ == Layout::NameTum || layout_ == Layout::NameKitti;
-    if (file.entries.empty()) throw FileError(path_, "no pose in this file");
-    if (file.by_name) requireDifferentNames(file);
-    return file;
-  }
-
- private:
-  [[noreturn]] void fail(const std::string& what) const {
-    throw FileError(path_, "line " + std::to_string(line_) + ": " + what);
-  }
-
-  PoseFile::Entry parseLine(const std::vector<std::string_view>& words) {
-    // Numbers are read from the right, because a name may contain blanks.
-    std::vector<double> numbers(words.size());
-    std::size_t name_words = words.size();
-    while (name_words > 0 && parseNumber(words[name_words - 1], numbers[name_words - 1])) --name_words;
-
-    const Layout layout = layoutOf(words, name_words);
-    if (layout_ != Layout::Unknown && layout != layout_) fail("the line has another layout than the lines before it");
-    layout_ = layout;
-
-    const bool is_matrix = layout == Layout::Kitti || layout == Layout::NameKitti;
-    const std::size_t first = words.size() - (is_matrix ? kKittiNumbers : kTumNumbers);
-    PoseFile::Entry entry;
-    entry.line = line_;
-    if (first > 0) {
-      const std::string_view last = words[first - 1];
-      entry.name =
-          std::string(words.front().data(), static_cast<std::size_t>(last.data() + last.size() - words.front().data()));
-    }
-    entry.pose = is_matrix ? poseFromMatrix(&numbers[first]) : poseFromQuaternion(&numbers[first]);
-    return entry;
-  }
-
-  Layout layoutOf(const std::vector<std::string_view>& words, std::size_t name_words) const {
-    const std::size_t numbers = words.size() - name_words;
-    if (name_words == 0 && numbers == 1 + kTumNumbers) return Layout::Tum;
-    if (name_words == 0 && numbers == kKittiNumbers) return Layout::Kitti;
-    if (name_words == 0 && numbers == 1 + kKittiNumbers) return Layout::NameKitti;  // the scans' names are numbers
-    if (name_words > 0 && numbers == kTumNumbers) return Layout::NameTum;
-    if (name_words > 0 && numbers == kKittiNumbers) return Layout::NameKitti;
-    std::string what = std::to_string(words.size()) + " words";
-    if (name_words > 0) what += ", the last one that is not a number is " + quote(words[name_words - 1]);
-    fail(what +
-         ": a pose is 'time x y z qx qy qz qw' (TUM), the 12 numbers of a 3 x 4 matrix (KITTI), or a file name "
-         "before 'x y z qx qy qz qw' or before the 12 numbers, with blanks between them");
-  }
-
-  Pose poseFromQuaternion(const double* v) const {
-    Pose pose;
-    pose.translation = {v[0], v[1], v[2]};
-    pose.rotation = {v[6], v[3], v[4], v[5]};
-    if (const std::string fault = poseFault(pose); !fault.empty()) fail(fault);
-    return normalised(pose);
-  }
-
-  Pose poseFromMatrix(const double* v) const {
-    const Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> matrix(v);
-    const Eigen::Matrix3d rotation = matrix.leftCols<3>();
-    if (!matrix.allFinite()) fail("the matrix is not finite");
-    const double error = (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-    if (!(error <= kRotationTolerance)) {
-      std::ostringstream text;
-      text << "the 3 x 3 part is not a rotation: R R' differs from the identity by " << error;
-      fail(text.str());
-    }
-    if (rotation.determinant() < 0.0) fail("the 3 x 3 part is a reflection (determinant -1), not a rotation");
-    Pose pose;
-    pose.translation = matrix.col(3);
-    pose.rotation = rotation;
-    return normalised(pose);
-  }
-
-  void requireDifferentNames(const PoseFile& file) {
-    // Names are compared with their last folder, as in 000000/cloud.pcd.
-    std::unordered_map<std::string, std::size_t> lines;
-    for (const PoseFile::Entry& entry : file.entries) {
-      const auto [first, is_new] = lines.emplace(folderAndFileName(entry.name), entry.line);
-      line_ = entry.line;
-      if (!is_new)
-        fail(quote(folderAndFileName(entry.name)) + " already has a pose in line " + std::to_string(first->second));
+/// Returns the layout that a comment before the poses gives; nullopt if no comment names the columns.
+NamedLayout layoutOfComments(const PoseText& text) {
+  const std::size_t width = fieldsOf(text, text.lines.front().text).size();
+  for (auto comment = text.comments.rbegin(); comment != text.comments.rend(); ++comment) {
+    std::string_view names = comment->text;
+    for (int part = 0; part < 2; ++part) {  // the whole comment, then what follows a colon: "# format: time x y z ..."
+      NamedLayout named = layoutOfNames(names);
+      if (named.layout && countNames(names) == width) return named;
+      const std::size_t colon = names.find(':');
+      if (colon == std::string_view::npos) break;
+      names.remove_prefix(colon + 1);
     }
   }
+  return {};
+}
 
-  const std::filesystem::path& path_;
-  std::string_view rest_;
-  std::size_t line_ = 0;
-  Layout layout_ = Layout::Unknown;
-};
+/// The kind of a table whose columns have names.
+PoseFormat formatOf(const PoseLayout& layout) {
+  using C = PoseColumn;
+  PoseLayout tum, euroc;
+  tum.columns = {C::Time, C::X, C::Y, C::Z, C::QX, C::QY, C::QZ, C::QW};
+  euroc.columns = {C::Time, C::X, C::Y, C::Z, C::QW, C::QX, C::QY, C::QZ};
+  if (layout.columns == tum.columns) return PoseFormat::Tum;
+  const std::string text = layout.text();
+  return text == euroc.text() && layout.unit.value_or(TimeUnit::Nanoseconds) == TimeUnit::Nanoseconds
+             ? PoseFormat::EuRoc
+             : PoseFormat::Table;
+}
+
+PoseFile readTable(const PoseText& text, const PoseLayout& layout, std::size_t first, PoseFormat format) {
+  PoseFile file = readPoseTable(text, layout, first);
+  file.format = format;
+  file.layout = layout.text();
+  if (layout.columns.front() == PoseColumn::Key) {  // now it is known what the key is
+    const PoseFile::Entry& entry = file.entries.front();
+    file.layout.replace(0, 3, file.by_name ? "name" : entry.index ? "index" : "time");
+  }
+  return file;
+}
+
+PoseFile readNamedTable(const PoseText& text, const std::string& columns) {
+  const bool has_header = isHeader(text);
+  if (columns.empty()) {
+    if (!has_header) {
+      if (const NamedLayout named = layoutOfComments(text); named.layout && !named.lacks_unit)
+        return readTable(text, *named.layout, 0, PoseFormat::Table);
+      text.fail(text.lines.front().number, "no line with the names of the columns");
+    }
+    const NamedLayout named = layoutOfNames(text.lines.front().text);
+    if (named.lacks_unit) text.fail(text.lines.front().number, named.problem);
+    if (!named.layout)
+      text.fail(text.lines.front().number, "the names of the columns do not give a pose: " + named.problem +
+                                               "; name the columns with --pose-format \"time x y z qx qy qz qw\"");
+    return readTable(text, *named.layout, 1, formatOf(*named.layout));
+  }
+  const NamedLayout named = layoutOfNames(columns);
+  if (!named.problem.empty())
+    throw FileError(text.path, "the columns '" + columns + "' do not give a pose: " + named.problem);
+  return readTable(text, *named.layout, has_header ? 1 : 0, PoseFormat::Table);
+}
+
+PoseFile readAutomatic(const PoseText& text) {
+  if (isPoseGraph(text)) return readPoseGraph(text);
+  if (isHeader(text)) return readNamedTable(text, "");
+  if (isBlocks(text)) return readPoseBlocks(text);
+  if (const NamedLayout named = layoutOfComments(text); named.layout) {
+    if (named.lacks_unit) text.fail(text.lines.front().number, named.problem);
+    return readTable(text, *named.layout, 0, formatOf(*named.layout));
+  }
+  const InferredLayout inferred = inferLayout(text, 0);
+  PoseFile file = readTable(text, inferred.layout, 0, inferred.format);
+  file.indices_may_be_ids = inferred.index_behind;
+  return file;
+}
+
+/// Names are compared with their last folder, as in 000000/cloud.pcd.
+void requireDifferentNames(const PoseFile& file) {
+  std::unordered_map<std::string, std::size_t> lines;
+  for (const PoseFile::Entry& entry : file.entries) {
+    const std::string name = folderAndFileName(entry.name);
+    const auto [first, is_new] = lines.emplace(name, entry.line);
+    if (!is_new)
+      throw FileError(file.path, "line " + std::to_string(entry.line) + ": " + quote(name) +
+                                     " already has a pose in line " + std::to_string(first->second));
+  }
+}
 
 /// Finds the entry of a scan by its name.
 class NameIndex {
  public:
   explicit NameIndex(const PoseFile& file) {
     for (const PoseFile::Entry& entry : file.entries) {
+      if (entry.name.empty()) continue;
       by_folder_.emplace(folderAndFileName(entry.name), &entry);
-      const auto [place, is_new] = entries_.emplace(fileName(entry), &entry);
+      const auto [place, is_new] = entries_.emplace(nameOfEntry(entry), &entry);
       if (!is_new) place->second = nullptr;  // only the folders tell these entries apart
     }
   }
@@ -161,6 +140,11 @@ class NameIndex {
   std::unordered_map<std::string, const PoseFile::Entry*> entries_;
 };
 
+Pose poseOfEntry(const PoseFile& file, const PoseFile::Entry& entry) {
+  if (!entry.pose) throw FileError(file.path, "line " + std::to_string(entry.line) + " has no pose (NaN)");
+  return *entry.pose;
+}
+
 std::vector<Pose> posesByName(const PoseFile& file, const NameIndex& index,
                               const std::vector<std::filesystem::path>& scans) {
   std::vector<Pose> poses;
@@ -172,18 +156,48 @@ std::vector<Pose> posesByName(const PoseFile& file, const NameIndex& index,
     if (!is_new)
       throw FileError(file.path, "line " + std::to_string(entry->line) + ": " + quote(entry->name) + " names both " +
                                      user->second.string() + " and " + scan.string());
-    poses.push_back(entry->pose);
+    poses.push_back(poseOfEntry(file, *entry));
   }
   return poses;
 }
 
 }  // namespace
 
-PoseFile readPoseFile(const std::filesystem::path& path) {
-  const MappedFile file(path);
-  PoseFile poses = PoseFileParser(path, file.bytes()).parse();
-  file.requireWhole();
-  return poses;
+PoseFile readPoseFile(const std::filesystem::path& path, PoseFormat format, const std::string& columns) {
+  const MappedFile mapped(path);
+  const PoseText text = splitPoseText(path, mapped.bytes());
+  const auto read = [&]() -> PoseFile {
+    switch (format) {
+      case PoseFormat::Automatic:
+        return readAutomatic(text);
+      case PoseFormat::G2o:
+        return readPoseGraph(text);
+      case PoseFormat::Table:
+        return readNamedTable(text, columns);
+      case PoseFormat::Matrix4:
+        if (isBlocks(text)) return readPoseBlocks(text);
+        break;
+      default:
+        break;
+    }
+    const std::size_t first = isHeader(text) ? 1 : 0;
+    if (format == PoseFormat::XyzRpyDegrees || format == PoseFormat::XyzRpyRadians) {
+      NamedLayout named = first > 0 ? layoutOfNames(text.lines.front().text) : layoutOfComments(text);
+      if (named.layout && named.layout->rotation == RotationKind::RollPitchYaw) {
+        named.layout->degrees = format == PoseFormat::XyzRpyDegrees;
+        return readTable(text, *named.layout, first, format);
+      }
+    }
+    if (first >= text.lines.size()) throw FileError(path, "no pose in this file, only a header line");
+    return readTable(text, layoutOfFormat(text, format, first), first, format);
+  };
+  PoseFile file = read();
+  mapped.requireWhole();
+  file.path = path;
+  if (isPoseGraph(text)) file.format = PoseFormat::G2o;
+  if (file.format == PoseFormat::Automatic) file.format = PoseFormat::Matrix4;
+  if (file.by_name) requireDifferentNames(file);
+  return file;
 }
 
 std::vector<Pose> posesForScans(const PoseFile& file, const std::vector<std::filesystem::path>& scans) {
@@ -200,7 +214,7 @@ std::vector<Pose> posesForScans(const PoseFile& file, const std::vector<std::fil
                                    " scans: give one line per scan in the order of the scans, or start each line with "
                                    "the file name of its scan");
   std::vector<Pose> poses;
-  for (const PoseFile::Entry& entry : file.entries) poses.push_back(entry.pose);
+  for (const PoseFile::Entry& entry : file.entries) poses.push_back(poseOfEntry(file, entry));
   return poses;
 }
 

@@ -75,6 +75,10 @@ std::vector<std::string> scanNames(const std::vector<std::filesystem::path>& sca
   return names;
 }
 
+std::string folderAndFileName(const std::filesystem::path& path) {
+  return (folderName(path) / path.filename()).string();
+}
+
 bool naturalLess(const std::string& a, const std::string& b) {
   std::string_view rest_a = a, rest_b = b;
   while (!rest_a.empty() && !rest_b.empty()) {

@@ -98,7 +98,7 @@ std::map<std::string, std::string> writeAll() {
   EXPECT_EQ(loadTiles(folder / "tiles").gaussianCount(0), map.gaussianCount(0));
   EXPECT_EQ(PcdReader(folder / "points.pcd").size(), kPoints.size());
   EXPECT_EQ(readPly(folder / "mesh.ply").vertices[2].y(), 1234.5);
-  EXPECT_EQ(readPoseFile(folder / "poses.tum").entries[1].pose.translation.x(), 1234.5);
+  EXPECT_EQ(readPoseFile(folder / "poses.tum").entries[1].pose->translation.x(), 1234.5);
   std::map<std::string, std::string> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder))
     if (entry.is_regular_file()) files[fs::relative(entry.path(), folder)] = contentsOf(entry.path());
@@ -135,7 +135,7 @@ TEST(Locale, DoesNotChangeWhatIsRead) {
   EXPECT_EQ(block.coordinate[0][0], 1234.5);
   EXPECT_EQ(block.coordinate[1][0], -0.125);
   EXPECT_EQ(block.coordinate[2][0], 1e-3);
-  EXPECT_EQ(readPoseFile(poses).entries[0].pose.translation, Eigen::Vector3d(1.5, 0.25, 1234.5));
+  EXPECT_EQ(readPoseFile(poses).entries[0].pose->translation, Eigen::Vector3d(1.5, 0.25, 1234.5));
   const CarmenLog read = readCarmenLog(log);
   ASSERT_EQ(read.scans.size(), 1u);
   EXPECT_EQ(read.scans[0].ranges[1], 1.25);

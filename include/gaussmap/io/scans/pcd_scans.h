@@ -10,6 +10,7 @@
 #include "gaussmap/core/error.h"
 #include "gaussmap/core/scans.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
+#include "gaussmap/io/scans/pose_file.h"
 #include "gaussmap/version.h"
 
 namespace gaussmap {
@@ -70,18 +71,45 @@ class GAUSSMAP_API PcdScans : public Scans {
 /// directory has no such file.
 GAUSSMAP_API std::vector<std::filesystem::path> listScans(const std::vector<std::filesystem::path>& inputs);
 
-/// Scans with poses, and the warnings about them.
+/// The pose of the sensor in the frame that the poses describe, for example of a lidar on a vehicle.
+struct Extrinsic {
+  Pose pose;                   ///< sensor frame to the frame that the poses describe
+  bool turns_map = false;      ///< true: the map frame is turned as well, pose^-1 * T * pose, as usual for KITTI
+  std::filesystem::path file;  ///< where it comes from; can be empty
+};
+
+/// Reads an extrinsic: a pose (x y z qx qy qz qw), a 3 x 4 or 4 x 4 matrix, the matrix T_BS of a sensor.yaml (EuRoC),
+/// or the line Tr of a calib.txt (KITTI). Throws FileError if the file has none of them.
+GAUSSMAP_API Extrinsic readExtrinsic(const std::filesystem::path& file);
+
+/// Options of findScans().
+struct FindScansOptions {
+  std::filesystem::path poses;                     ///< pose file; empty: the VIEWPOINT of each scan
+  PoseFormat pose_format = PoseFormat::Automatic;  ///< kind of the pose file
+  std::string pose_columns;                        ///< names of its columns, for PoseFormat::Table
+  PoseMatching matching;                           ///< how poses and scans are matched
+  bool skip_without_pose = false;                  ///< leaves out the scans without a pose; false: they are an error
+  std::optional<Extrinsic> extrinsic =
+      std::nullopt;                     ///< std::nullopt: calib.txt beside a KITTI pose file, if it exists
+  ScanFrame frame = ScanFrame::Sensor;  ///< frame of the points in the files
+};
+
+/// Scans with poses, and what was found out about them.
 struct FoundScans {
-  PcdScans scans;                     ///< the scans
-  std::vector<std::string> warnings;  ///< one or two sentences each, with file names and what to do
+  PcdScans scans;                         ///< the scans
+  std::vector<std::string> warnings;      ///< one or two sentences each, with file names and what to do
+  std::string poses;                      ///< where the poses come from and how they were matched, one sentence
+  std::vector<std::string> without_pose;  ///< the scans that were left out, with the reason
 };
 
 /// Lists the scans (see listScans()), assigns the poses, and checks them.
 ///
-/// The pose of a scan is its VIEWPOINT, unless `poses` names a pose file (see readPoseFile() and posesForScans()).
-/// There is a warning if a scan is listed twice. Throws FileError if a file cannot be read or is a map, or if a pose is
-/// not usable.
+/// The pose of a scan is its VIEWPOINT, unless the options name a pose file (see readPoseFile() and matchPoses()).
+/// There is a warning if a scan is listed twice. Throws FileError if a file cannot be read or is a map, if a scan has
+/// no pose, or if a pose is not usable.
 GAUSSMAP_API FoundScans findScans(const std::vector<std::filesystem::path>& inputs,
-                                  const std::filesystem::path& poses = {}, ScanFrame frame = ScanFrame::Sensor);
+                                  const FindScansOptions& options = {});
+/// The same with a pose file and the defaults of the other options.
+GAUSSMAP_API FoundScans findScans(const std::vector<std::filesystem::path>& inputs, const std::filesystem::path& poses);
 
 }  // namespace gaussmap

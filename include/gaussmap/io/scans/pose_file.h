@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,36 +15,98 @@
 
 namespace gaussmap {
 
-/// A file of sensor poses in the map frame, one per line.
-///
-/// Blank lines and lines that start with `#` are ignored. The layouts are:
-///
-///     time x y z qx qy qz qw                      TUM
-///     r11 r12 r13 tx r21 r22 r23 ty r31 ... tz    KITTI: the rows of a 3 x 4 matrix
-///     name x y z qx qy qz qw                      the file name of a scan and a pose
-///     name r11 r12 r13 tx r21 ... tz              the file name of a scan and a matrix
+/// Kinds of pose files. The separators are blanks, tabs, commas or semicolons.
+enum class PoseFormat {
+  Automatic,      ///< recognised from the content
+  Tum,            ///< `key x y z qx qy qz qw`; the key is a time, an index or the name of a scan
+  Kitti,          ///< the 12 numbers of a 3 x 4 matrix, row by row; a key in front is allowed
+  Matrix4,        ///< the 16 numbers of a 4 x 4 matrix, in one line or in four; a key in front is allowed
+  EuRoc,          ///< `time x y z qw qx qy qz`, time in ns; further columns are ignored
+  XyzRpyDegrees,  ///< `key x y z roll pitch yaw`, degrees; the key may be missing
+  XyzRpyRadians,  ///< the same in radians
+  G2o,            ///< the vertices VERTEX_SE3:QUAT and VERTEX_SE2 of a pose graph
+  Table           ///< the names of the columns decide, in a header line or given
+};
+
+/// A file of poses.
 struct PoseFile {
   /// One pose of the file.
   struct Entry {
-    std::string name;      ///< first word as written: the time, or the file name of the scan; empty for KITTI
-    std::size_t line = 0;  ///< line number, from 1
-    Pose pose;             ///< sensor frame to map frame, unit quaternion
+    std::string name;                              ///< key in front as written, for example the name of a scan
+    std::optional<std::uint64_t> index;            ///< number of the scan
+    std::optional<std::chrono::nanoseconds> time;  ///< exact, since the zero of the file's clock
+    std::size_t line = 0;                          ///< line number, from 1
+    std::optional<Pose> pose;                      ///< sensor to map frame, unit quaternion; std::nullopt for NaN
   };
-  std::filesystem::path path;  ///< the file
-  std::vector<Entry> entries;  ///< in the order of the file
-  bool by_name = false;        ///< true: the first words are file names, and the order of the lines does not matter
+  std::filesystem::path path;                 ///< the file
+  PoseFormat format = PoseFormat::Automatic;  ///< as recognised, never Automatic
+  std::string layout;                         ///< for messages: "time x y z qx qy qz qw"
+  std::vector<Entry> entries;                 ///< in the order of the file
+  bool by_name = false;                       ///< true: the keys are names of scans
+  bool indices_may_be_ids = false;            ///< true: the indices stand behind the pose, like the ids of RTAB-Map
 };
 
-/// Reads a pose file. The layout follows from the words of a line and must be the same in all lines.
+/// Reads a pose file.
+///
+/// A header line, also behind `#`, gives the columns if it names all parts of a pose. Without one, the kind follows
+/// from the numbers. Roll, pitch and yaw mean R = Rz(yaw) Ry(pitch) Rx(roll). `columns` are the names of the columns of
+/// a PoseFormat::Table, for example "time x y z qw qx qy qz"; empty: the header line.
 ///
 /// Throws FileError, with the line, in these cases:
-/// - The number of words is wrong, or a number is not finite.
+/// - The kind is not clear. The message says how to state it.
+/// - The lines have different layouts, or a number is infinite. A line with NaN in place of all numbers has no pose.
 /// - The norm of a quaternion differs from 1 by more than kQuaternionTolerance, or a matrix differs from a rotation by
 ///   as much.
 /// - A name occurs twice.
-GAUSSMAP_API PoseFile readPoseFile(const std::filesystem::path& path);
+GAUSSMAP_API PoseFile readPoseFile(const std::filesystem::path& path, PoseFormat format = PoseFormat::Automatic,
+                                   const std::string& columns = "");
 
-/// Returns the pose of each scan.
+/// How scans and poses belong together.
+enum class PoseMatch {
+  Automatic,  ///< by name, else by time or index if the file and the scans have them, else by order
+  Name,       ///< the file names the scan
+  Index,      ///< the number in the scan's name is the index, or the number of the line counted from 0
+  Time,       ///< the nearest time
+  Order       ///< one line per scan
+};
+
+/// Options of matchPoses().
+struct PoseMatching {
+  PoseMatch match = PoseMatch::Automatic;
+  std::optional<double> max_time_gap;  ///< [s]; std::nullopt: half of the median interval between scans
+  bool interpolate = false;            ///< between the two nearest poses: linear and slerp; false: the nearest pose
+};
+
+/// A scan to which a pose belongs.
+struct ScanKey {
+  std::string name;                              ///< file name
+  std::optional<std::chrono::nanoseconds> time;  ///< std::nullopt: the time in the name, if there is one
+};
+
+/// The poses of scans.
+struct MatchedPoses {
+  /// A scan without a pose.
+  struct Missing {
+    std::size_t scan = 0;  ///< index of the scan
+    std::string reason;    ///< "0.48 s from the nearest pose"
+  };
+  std::vector<std::optional<Pose>> poses;  ///< one per scan
+  std::vector<Missing> missing;            ///< the scans without a pose, in order
+  PoseMatch match = PoseMatch::Order;      ///< how they were matched, never Automatic
+  std::string how;                         ///< for messages: "matched by time, at most 0.05 ms apart"
+  std::vector<std::string> warnings;       ///< one or two sentences each
+};
+
+/// Gives each scan its pose.
+///
+/// Times in names are decimal numbers or integers in s, ms, us or ns, or pairs of seconds and nanoseconds. The unit
+/// follows from the magnitude, and is the same for all scans. Times are compared exactly. The order of the lines counts
+/// only if the file and the scans have no common keys. Throws FileError if the numbers of scans and poses then differ,
+/// or if two poses fit a scan equally well.
+GAUSSMAP_API MatchedPoses matchPoses(const PoseFile& file, const std::vector<ScanKey>& scans,
+                                     const PoseMatching& options = {});
+
+/// Returns the pose of each scan or map, by name or by order, never by time.
 ///
 /// If the file has names, a scan gets the entry named like its file, with or without extension. Entries of other scans
 /// are ignored. Times that are the names of all scans count as names. Otherwise the poses are in the order of the file,

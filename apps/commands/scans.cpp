@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// gaussmap scans INPUT...: shows what pcd2map would read, without building a map.
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+#include <map>
+#include <memory>
+#include <stdexcept>
+
+#include "commands/commands.h"
+#include "commands/scan_input.h"
+#include "common/command.h"
+#include "common/json.h"
+#include "common/progress_bar.h"
+#include "common/report.h"
+
+namespace gaussmap::app {
+namespace {
+
+const Help kScansHelp = {
+    "Show scans, their poses and warnings, without building a map", "gaussmap scans scans/ --poses poses.txt",
+    R"(Reads the scans as pcd2map does, and prints one table: files, kind, points, fields, times, how poses were found and
+matched, the box around the points in the map frame, and all warnings. The exit code is 1 if pcd2map would stop, for
+example because a scan has no pose.)"};
+
+struct ScansCommand {
+  ScanInput input;
+  bool each = false;
+  bool json = false;
+};
+
+/// What the points of one scan are.
+struct ScanPoints {
+  PointCounts counts;
+  std::optional<Box<3>> box;  // map frame
+};
+
+Json vectorJson(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+void extend(std::optional<Box<3>>& box, const Eigen::Vector3d& point) {
+  if (!box) box = Box<3>{point, point};
+  box->low = box->low.cwiseMin(point);
+  box->high = box->high.cwiseMax(point);
+}
+
+ScanPoints pointsOf(const PcdScans& scans, std::size_t index, double max_range) {
+  ScanPoints result;
+  const ScanInfo info = scans.info(index);
+  const bool in_map = scans.frame() == ScanFrame::Map;
+  const std::unique_ptr<ScanReader> reader = scans.open(index);
+  PointBlock<3> block;
+  for (std::size_t first = 0; first < reader->size(); first += block.size) {
+    reader->read(first, block);
+    if (block.size == 0) break;
+    for (std::size_t i = 0; i < block.size; ++i) {
+      const Eigen::Vector3d point(block.coordinate[0][i], block.coordinate[1][i], block.coordinate[2][i]);
+      const Eigen::Vector3d from_sensor = in_map ? Eigen::Vector3d(point - info.pose.translation) : point;
+      ++result.counts.read;
+      if (!point.allFinite()) {
+        ++result.counts.non_finite;
+      } else if (from_sensor.isZero(0.0)) {
+        ++result.counts.at_sensor;
+      } else if (from_sensor.norm() > max_range) {
+        ++result.counts.beyond_range;
+      } else {
+        ++result.counts.accepted;
+        extend(result.box, in_map ? point : Eigen::Vector3d(info.pose * point));
+      }
+    }
+  }
+  reader->requireWhole();
+  return result;
+}
+
+std::string kindOf(const PcdHeader& header) {
+  const char* const encoding = header.encoding == PcdEncoding::Ascii    ? "ascii"
+                               : header.encoding == PcdEncoding::Binary ? "binary"
+                                                                        : "binary_compressed";
+  return std::string("PCD ") + encoding + (header.height > 1 ? ", organised" : "");
+}
+
+std::string fieldsText(const PcdHeader& header) {
+  std::string text;
+  for (const PcdField& field : header.fields) {
+    if (field.name == "_") continue;
+    text += (text.empty() ? "" : " ") + field.name;
+    if (field.count > 1) text += "[" + std::to_string(field.count) + "]";
+  }
+  return text;
+}
+
+/// "PCD binary", or "PCD binary (4), PCD ascii (2)" if the scans differ.
+std::string listed(const std::map<std::string, std::size_t>& kinds) {
+  std::string text;
+  for (const auto& [kind, count] : kinds)
+    text += (text.empty() ? "" : ", ") + kind + (kinds.size() > 1 ? " (" + std::to_string(count) + ")" : "");
+  return text;
+}
+
+struct Table {
+  std::vector<ScanPoints> points;
+  PointCounts counts;
+  std::optional<Box<3>> box;
+  std::map<std::string, std::size_t> kinds, fields;
+  std::vector<double> times;
+};
+
+Table tableOf(const PcdScans& scans, double max_range) {
+  Table table;
+  ProgressBar bar;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    table.points.push_back(pointsOf(scans, i, max_range));
+    const ScanPoints& points = table.points.back();
+    table.counts += points.counts;
+    if (points.box) extend(table.box, points.box->low), extend(table.box, points.box->high);
+    const PcdHeader header = scans.reader(i).header();
+    ++table.kinds[kindOf(header)];
+    ++table.fields[fieldsText(header)];
+    if (scans.files()[i].time) table.times.push_back(*scans.files()[i].time);
+    bar.show({i + 1, scans.size(), 0, 0});
+  }
+  std::sort(table.times.begin(), table.times.end());
+  return table;
+}
+
+std::string timesText(const std::vector<double>& times) {
+  if (times.empty()) return "unknown (no times in the names)";
+  std::string text = formatted("%.6f", times.front()) + " .. " + formatted("%.6f", times.back()) + " s";
+  if (times.size() > 1)
+    text += ", mean interval " +
+            formatted("%.4g", (times.back() - times.front()) / static_cast<double>(times.size() - 1)) + " s";
+  return text;
+}
+
+std::string boxText(const std::optional<Box<3>>& box) {
+  if (!box) return "none";
+  std::string text;
+  for (const auto* corner : {&box->low, &box->high}) {
+    text += text.empty() ? "[" : " .. [";
+    for (int axis = 0; axis < 3; ++axis) text += (axis > 0 ? " " : "") + formatted("%.2f", (*corner)(axis));
+    text += "]";
+  }
+  return text + " m";
+}
+
+Json jsonOf(const FoundScans& found, const Table& table) {
+  Json scans = Json::array();
+  for (std::size_t i = 0; i < found.scans.size(); ++i) {
+    const PcdScan& scan = found.scans.files()[i];
+    const PcdHeader header = found.scans.reader(i).header();
+    const Pose::Rotation& q = scan.pose.rotation;
+    Json one = {{"file", scan.path.string()},
+                {"kind", kindOf(header)},
+                {"points", table.points[i].counts.read},
+                {"accepted", table.points[i].counts.accepted},
+                {"fields", fieldsText(header)},
+                {"translation", vectorJson(scan.pose.translation)},
+                {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
+    if (scan.time) one["time"] = *scan.time;
+    scans.push_back(std::move(one));
+  }
+  Json json = {{"scans", scans},
+               {"points",
+                {{"read", table.counts.read},
+                 {"accepted", table.counts.accepted},
+                 {"non_finite", table.counts.non_finite},
+                 {"at_sensor", table.counts.at_sensor},
+                 {"beyond_range", table.counts.beyond_range}}},
+               {"poses", found.poses},
+               {"without_pose", found.without_pose},
+               {"warnings", found.warnings}};
+  if (!table.times.empty()) json["times"] = {table.times.front(), table.times.back()};
+  if (table.box) json["box"] = {{"low", vectorJson(table.box->low)}, {"high", vectorJson(table.box->high)}};
+  return json;
+}
+
+void printRow(const char* name, const std::string& value) {
+  std::printf("%-10s %s\n", name, value.c_str());
+}
+
+void print(const FoundScans& found, const Table& table, bool each) {
+  const std::vector<PcdScan>& files = found.scans.files();
+  std::string names = std::to_string(files.size());
+  if (!files.empty()) names += ": " + files.front().path.string();
+  if (files.size() > 1) names += " .. " + files.back().path.string();
+  printRow("files", names);
+  printRow("kind", listed(table.kinds));
+  std::string points = std::to_string(table.counts.accepted);
+  if (table.counts.accepted < table.counts.read)
+    points += " (left out: " + std::to_string(table.counts.non_finite) + " not finite, " +
+              std::to_string(table.counts.at_sensor) + " at range 0, " + std::to_string(table.counts.beyond_range) +
+              " too far)";
+  printRow("points", points);
+  printRow("fields", listed(table.fields));
+  printRow("times", timesText(table.times));
+  printRow("poses", found.poses);
+  for (const std::string& scan : found.without_pose) printRow("no pose", scan);
+  printRow("box", boxText(table.box));
+  if (found.warnings.empty()) printRow("warnings", "none");
+  for (const std::string& warning : found.warnings) printRow("warning", warning);
+  if (!each) return;
+  std::printf("\n%10s %18s %10s %10s %10s  %s\n", "points", "time [s]", "x [m]", "y [m]", "z [m]", "file");
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const Eigen::Vector3d& t = files[i].pose.translation;
+    std::printf("%10s %18s %10.3f %10.3f %10.3f  %s\n", std::to_string(table.points[i].counts.accepted).c_str(),
+                files[i].time ? formatted("%.6f", *files[i].time).c_str() : "-", t.x(), t.y(), t.z(),
+                files[i].path.string().c_str());
+  }
+}
+
+void run(const ScansCommand& command) {
+  // Scans without a pose are listed first. Then the command fails, as pcd2map does.
+  FindScansOptions options = findOptions(command.input);
+  options.skip_without_pose = true;
+  const FoundScans found = findScans({command.input.paths.begin(), command.input.paths.end()}, options);
+  const double max_range =
+      command.input.max_range > 0.0 ? command.input.max_range : std::numeric_limits<double>::infinity();
+  const Table table = tableOf(found.scans, max_range);
+  if (command.json)
+    printJson(jsonOf(found, table));
+  else
+    print(found, table, command.each);
+  if (!found.without_pose.empty() && !command.input.skip_without_pose) {
+    std::fflush(stdout);
+    throw std::runtime_error(command.input.poses + ": " + std::to_string(found.without_pose.size()) +
+                             " of the scans have no pose, so pcd2map would stop; use --skip-without-pose to leave them "
+                             "out");
+  }
+}
+
+}  // namespace
+
+void addScans(CLI::App& app) {
+  auto options = std::make_shared<ScansCommand>();
+  Command command(app, "scans", kScansHelp);
+  addScanPaths(command, options->input);
+  command.flag("--each", options->each, "add one line per scan: points, time and position");
+  addScanOptions(command, options->input);
+  command.json(options->json);
+  command.onRun([options] { run(*options); });
+}
+
+}  // namespace gaussmap::app

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/scans/assign_poses.h"
+
+#include <algorithm>
+#include <system_error>
+
+#include "io/scans/name_numbers.h"
+#include "io/scans/pose_times.h"
+#include "io/scans/scan_names.h"
+
+namespace gaussmap::detail {
+namespace {
+
+std::string formatText(PoseFormat format) {
+  switch (format) {
+    case PoseFormat::Tum:
+      return "TUM";
+    case PoseFormat::Kitti:
+      return "KITTI";
+    case PoseFormat::Matrix4:
+      return "matrices";
+    case PoseFormat::EuRoc:
+      return "EuRoC";
+    case PoseFormat::G2o:
+      return "g2o";
+    default:
+      return "table";
+  }
+}
+
+std::string countText(std::size_t count, const std::string& what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+/// What to do about scans without a pose.
+std::string wayOut(PoseMatch match) {
+  const std::string skip = "use --skip-without-pose to leave such scans out";
+  if (match == PoseMatch::Time) return skip + ", or --max-time-gap if the nearest poses are right";
+  if (match == PoseMatch::Index) return skip + ", or --match-poses order if the lines are in the order of the scans";
+  return skip;
+}
+
+/// "2 of 6 scans have no pose: a.pcd (no index 3), b.pcd (no index 4)"
+std::string missingText(const MatchedPoses& matched, const std::vector<ScanKey>& scans) {
+  const std::size_t count = matched.missing.size(), kNamed = count < scans.size() ? 3 : 1;
+  std::string text = std::to_string(count) + " of " + countText(scans.size(), "scan") +
+                     (count == 1 ? " has no pose: " : " have no pose: ");
+  for (std::size_t i = 0; i < std::min(count, kNamed); ++i)
+    text += (i > 0 ? ", " : "") + scans[matched.missing[i].scan].name + " (" + matched.missing[i].reason + ")";
+  return text + (count > kNamed ? " ..." : "");
+}
+
+bool isIdentity(const Pose& pose) {
+  return pose.translation.isZero(0.0) && pose.rotation.coeffs() == Pose::Rotation::Identity().coeffs();
+}
+
+bool isPlainKitti(const PoseFile& file) {
+  return file.format == PoseFormat::Kitti && !file.by_name &&
+         std::none_of(file.entries.begin(), file.entries.end(),
+                      [](const PoseFile::Entry& entry) { return entry.time; });
+}
+
+/// Returns the calibration beside a KITTI pose file, if there is one.
+std::optional<Extrinsic> calibrationBeside(const PoseFile& file, std::vector<std::string>& warnings) {
+  if (!isPlainKitti(file)) return std::nullopt;
+  const std::filesystem::path calibration = file.path.parent_path() / "calib.txt";
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(calibration, ignored)) return std::nullopt;
+  try {
+    return readExtrinsic(calibration);
+  } catch (const FileError& error) {
+    warnings.push_back(std::string(error.what()) + ". The poses of " + file.path.string() +
+                       " are used as those of the sensor.");
+    return std::nullopt;
+  }
+}
+
+void readPoses(std::vector<ScanPose>& scans, const std::vector<ScanKey>& keys, const FindScansOptions& options,
+               AssignedPoses& assigned, std::optional<Extrinsic>& extrinsic) {
+  const PoseFile file = readPoseFile(options.poses, options.pose_format, options.pose_columns);
+  MatchedPoses matched = matchPoses(file, keys, options.matching);
+  assigned.warnings = std::move(matched.warnings);
+  assigned.description = file.path.string() + ": " + formatText(file.format) + " (" + file.layout + "), " +
+                         countText(file.entries.size(), "pose") + " for " + countText(scans.size(), "scan") + ", " +
+                         matched.how;
+  if (!matched.missing.empty()) {
+    const std::string what = missingText(matched, keys);
+    const bool none = matched.missing.size() == scans.size();
+    if (none || !options.skip_without_pose)
+      throw FileError(file.path, what + (none ? "; " + matched.how : "") + "; " + wayOut(matched.match));
+    assigned.warnings.push_back(file.path.string() + ": " + what + "; left out");
+  }
+  for (const MatchedPoses::Missing& missing : matched.missing) {
+    assigned.left_out[missing.scan] = true;
+    assigned.without_pose.push_back(scans[missing.scan].path.string() + ": " + missing.reason);
+  }
+  for (std::size_t i = 0; i < scans.size(); ++i)
+    if (matched.poses[i]) scans[i].pose = *matched.poses[i];
+  if (!extrinsic) extrinsic = calibrationBeside(file, assigned.warnings);
+}
+
+}  // namespace
+
+AssignedPoses assignPoses(std::vector<ScanPose>& scans, const FindScansOptions& options) {
+  AssignedPoses assigned;
+  assigned.left_out.resize(scans.size());
+  assigned.times.resize(scans.size());
+  std::vector<std::filesystem::path> paths;
+  for (const ScanPose& scan : scans) paths.push_back(scan.path);
+  const std::vector<std::string> names = scanNames(paths);
+  std::vector<ScanKey> keys;
+  for (const std::string& name : names) keys.push_back({name, std::nullopt});
+  const std::vector<Decimal> written = numbersIn(names).times;
+  const std::vector<Instant> times = timesIn(written, unitByMagnitude(largestOf(written)));
+  for (std::size_t i = 0; i < times.size(); ++i) assigned.times[i] = secondsOf(times[i]);
+
+  std::optional<Extrinsic> extrinsic = options.extrinsic;
+  if (options.poses.empty())
+    assigned.description = "VIEWPOINT of each scan";
+  else
+    readPoses(scans, keys, options, assigned, extrinsic);
+  if (!extrinsic || isIdentity(extrinsic->pose)) return assigned;
+  const Pose sensor = extrinsic->pose, back = extrinsic->turns_map ? sensor.inverse() : Pose();
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    if (assigned.left_out[i]) continue;
+    if (const std::string fault = poseFault(scans[i].pose); !fault.empty()) throw FileError(scans[i].path, fault);
+    const Pose moved = normalised(scans[i].pose) * sensor;
+    scans[i].pose = extrinsic->turns_map ? back * moved : moved;
+  }
+  assigned.description += "; extrinsic";
+  if (!extrinsic->file.empty()) assigned.description += " of " + extrinsic->file.string();
+  assigned.description += extrinsic->turns_map
+                              ? " applied as Tr^-1 T Tr, so the map has the axes of the lidar (--extrinsic none: not)"
+                              : " applied";
+  return assigned;
+}
+
+}  // namespace gaussmap::detail

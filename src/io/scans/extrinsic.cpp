@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Files with the pose of a sensor on its vehicle.
+#include <algorithm>
+
+#include "gaussmap/io/scans/pcd_scans.h"
+#include "io/files/mapped_file.h"
+#include "io/files/text.h"
+#include "io/scans/pose_text.h"
+
+namespace gaussmap {
+using namespace detail;
+
+namespace {
+
+/// Blanks in place of what stands between numbers.
+std::string numbersOnly(std::string_view text) {
+  std::string plain(text);
+  for (char& c : plain)
+    if (c == ',' || c == ';' || c == '[' || c == ']' || c == '\n') c = ' ';
+  return plain;
+}
+
+std::optional<Pose> poseOfNumbers(const PoseText& text, std::size_t line, const std::vector<double>& numbers) {
+  if (numbers.size() == 12 || numbers.size() == 16) {
+    if (numbers.size() == 16 && !(numbers[12] == 0.0 && numbers[13] == 0.0 && numbers[14] == 0.0 && numbers[15] == 1.0))
+      text.fail(line, "expected 0 0 0 1 as the last row of a 4 x 4 matrix");
+    return poseOfMatrix(text, line, numbers.data());
+  }
+  if (numbers.size() != 7) return std::nullopt;
+  const Pose pose{{numbers[0], numbers[1], numbers[2]}, Pose::Rotation(numbers[6], numbers[3], numbers[4], numbers[5])};
+  if (const std::string fault = poseFault(pose); !fault.empty()) text.fail(line, fault);
+  return normalised(pose);
+}
+
+/// Returns the text behind a key such as "Tr:"; nullopt if the line has another one.
+std::optional<std::string_view> valueOf(std::string_view line, std::string_view key) {
+  if (line.substr(0, key.size()) != key) return std::nullopt;
+  line.remove_prefix(key.size());
+  while (!line.empty() && isBlank(line.front())) line.remove_prefix(1);
+  if (line.empty() || line.front() != ':') return std::nullopt;
+  return line.substr(1);
+}
+
+std::vector<double> numbersInText(std::string_view text) {
+  const std::string plain = numbersOnly(text);
+  return numbersOf(splitWords(plain), 0);
+}
+
+}  // namespace
+
+Extrinsic readExtrinsic(const std::filesystem::path& file) {
+  const MappedFile mapped(file);
+  const PoseText text = splitPoseText(file, mapped.bytes());
+  Extrinsic extrinsic;
+  extrinsic.file = file;
+  bool has_keys = false;
+  for (const TextLine& line : text.lines) {
+    for (const char* const key : {"Tr", "Tr_velo_to_cam", "Tr_velo_cam"}) {
+      const std::optional<std::string_view> value = valueOf(line.text, key);
+      if (!value) continue;
+      const std::vector<double> numbers = numbersInText(*value);
+      if (numbers.size() != 12)
+        text.fail(line.number, std::string(key) + ": expected the 12 numbers of a 3 x 4 matrix");
+      extrinsic.pose = *poseOfNumbers(text, line.number, numbers);
+      extrinsic.turns_map = true;
+      return extrinsic;
+    }
+    has_keys = has_keys || line.text.find(':') != std::string_view::npos;
+  }
+  std::string_view all(text.lines.front().text.data(),
+                       static_cast<std::size_t>(text.lines.back().text.data() + text.lines.back().text.size() -
+                                                text.lines.front().text.data()));
+  std::size_t number = text.lines.front().number;
+  if (has_keys) {  // the matrix T_BS of a sensor.yaml: data: [...]
+    const std::size_t matrix = all.find("T_BS"),
+                      data = all.find("data:", matrix == std::string_view::npos ? 0 : matrix);
+    const std::size_t open = data == std::string_view::npos ? data : all.find('[', data);
+    const std::size_t close = open == std::string_view::npos ? open : all.find(']', open);
+    if (matrix == std::string_view::npos || close == std::string_view::npos)
+      throw FileError(file, "no line 'Tr:' (KITTI) and no matrix T_BS (EuRoC)");
+    number += static_cast<std::size_t>(std::count(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(open), '\n'));
+    all = all.substr(open, close - open);
+  }
+  const std::optional<Pose> pose = poseOfNumbers(text, number, numbersInText(all));
+  if (!pose)
+    throw FileError(file, "no extrinsic: expected x y z qx qy qz qw, the 12 or 16 numbers of a matrix, or a calib.txt");
+  mapped.requireWhole();
+  extrinsic.pose = *pose;
+  return extrinsic;
+}
+
+}  // namespace gaussmap

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/scans/pose_text.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <sstream>
+
+#include "io/files/text.h"
+
+namespace gaussmap::detail {
+namespace {
+
+constexpr double kRotationTolerance = 1e-3;
+
+using MatrixRows = Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>;
+
+double rotationError(const MatrixRows& matrix) {
+  const Eigen::Matrix3d rotation = matrix.leftCols<3>();
+  return (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && isBlank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && isBlank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+bool isNumber(std::string_view word) {
+  double value = 0.0;
+  return parseNumber(word, value);
+}
+
+}  // namespace
+
+void PoseText::fail(std::size_t line, const std::string& what) const {
+  throw FileError(path, "line " + std::to_string(line) + ": " + what);
+}
+
+PoseText splitPoseText(const std::filesystem::path& path, std::string_view rest) {
+  PoseText text;
+  text.path = path;
+  if (rest.substr(0, kByteOrderMark.size()) == kByteOrderMark) rest.remove_prefix(kByteOrderMark.size());
+  for (std::size_t number = 1; !rest.empty(); ++number) {
+    const std::string_view line = trimmed(takeLine(rest));
+    if (line.empty()) continue;
+    if (line.front() != '#' && line.front() != '%')
+      text.lines.push_back({number, line});
+    else if (text.lines.empty())
+      text.comments.push_back({number, line});
+  }
+  if (text.lines.empty()) throw FileError(path, "no pose in this file");
+  const std::string_view last = text.lines.back().text;
+  if (last.find(';') != std::string_view::npos)
+    text.separator = ';';
+  else if (last.find(',') != std::string_view::npos)
+    text.separator = ',';
+  return text;
+}
+
+std::vector<std::string_view> fieldsOf(const PoseText& text, std::string_view line, bool join_name) {
+  std::vector<std::string_view> fields;
+  if (text.separator == ' ') {
+    fields = splitWords(line);
+    if (!join_name) return fields;
+    std::size_t name_words = fields.size();
+    while (name_words > 0 && isNumber(fields[name_words - 1])) --name_words;
+    if (name_words < 2) return fields;
+    const std::string_view first = fields.front(), last = fields[name_words - 1];
+    fields.erase(fields.begin() + 1, fields.begin() + static_cast<std::ptrdiff_t>(name_words));
+    fields.front() = std::string_view(first.data(), static_cast<std::size_t>(last.data() + last.size() - first.data()));
+    return fields;
+  }
+  while (true) {
+    const std::size_t end = line.find(text.separator);
+    const std::string_view field = trimmed(line.substr(0, end));
+    // Blanks within a field separate numbers too, but not the words of a name.
+    const std::vector<std::string_view> words = splitWords(field);
+    if (words.size() > 1 && std::all_of(words.begin(), words.end(), isNumber))
+      fields.insert(fields.end(), words.begin(), words.end());
+    else
+      fields.push_back(field);
+    if (end == std::string_view::npos) break;
+    line.remove_prefix(end + 1);
+  }
+  if (fields.size() > 1 && fields.back().empty()) fields.pop_back();  // a separator at the end of the line
+  return fields;
+}
+
+std::vector<double> numbersOf(const std::vector<std::string_view>& fields, std::size_t first) {
+  std::vector<double> numbers;
+  for (std::size_t i = first; i < fields.size(); ++i) {
+    double value = 0.0;
+    if (!parseNumber(fields[i], value)) return {};
+    numbers.push_back(value);
+  }
+  return numbers;
+}
+
+bool isRigid(const double* elements) {
+  const MatrixRows matrix(elements);
+  return matrix.allFinite() && rotationError(matrix) <= kRotationTolerance && matrix.leftCols<3>().determinant() > 0.0;
+}
+
+Pose poseOfMatrix(const PoseText& text, std::size_t line, const double* elements) {
+  const MatrixRows matrix(elements);
+  if (!matrix.allFinite()) text.fail(line, "the matrix is not finite");
+  const double error = rotationError(matrix);
+  if (!(error <= kRotationTolerance)) {
+    std::ostringstream what;
+    what << "the 3 x 3 part is not a rotation: R R' differs from the identity by " << error;
+    text.fail(line, what.str());
+  }
+  const Eigen::Matrix3d rotation = matrix.leftCols<3>();
+  if (rotation.determinant() < 0.0) text.fail(line, "the 3 x 3 part is a reflection (determinant -1), not a rotation");
+  Pose pose;
+  pose.translation = matrix.col(3);
+  pose.rotation = rotation;
+  return normalised(pose);
+}
+
+}  // namespace gaussmap::detail

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/scans/pose_times.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <sstream>
+
+namespace gaussmap::detail {
+namespace {
+
+constexpr Instant kUsualGap = std::chrono::milliseconds(50);  // for one scan and one pose
+// Motions between the nearest and the interpolated pose above these are reported.
+constexpr double kNoticedMotion = 0.05;                          // [m]
+constexpr double kNoticedTurn = 0.5 * 3.14159265358979 / 180.0;  // [rad]
+
+Instant between(Instant a, Instant b) {
+  return a < b ? b - a : a - b;
+}
+
+/// Returns the median of the differences of sorted times; nullopt if all times are equal.
+std::optional<Instant> medianStep(std::vector<Instant> times) {
+  std::sort(times.begin(), times.end());
+  std::vector<Instant> steps;
+  for (std::size_t i = 1; i < times.size(); ++i)
+    if (times[i] != times[i - 1]) steps.push_back(times[i] - times[i - 1]);
+  if (steps.empty()) return std::nullopt;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
+}
+
+std::string shortTime(Instant time) {
+  const double seconds = secondsOf(time);
+  std::ostringstream text;
+  text.precision(3);
+  if (seconds < 1e-3)
+    text << seconds * 1e6 << " us";
+  else if (seconds < 1.0)
+    text << seconds * 1e3 << " ms";
+  else
+    text << seconds << " s";
+  return text.str();
+}
+
+Pose interpolate(const Pose& a, const Pose& b, double share) {
+  const Eigen::Quaterniond qa(a.rotation), qb(b.rotation);
+  return normalised({a.translation + share * (b.translation - a.translation), Pose::Rotation(qa.slerp(share, qb))});
+}
+
+/// The largest distance between the nearest and the interpolated poses.
+struct LargestMotion {
+  double metres = 0.0, turn = 0.0;
+  std::size_t scan = 0;
+
+  void add(const Pose& a, const Pose& b, std::size_t index) {
+    const double d = (a.translation - b.translation).norm();
+    const double r = Eigen::Quaterniond(a.rotation).angularDistance(Eigen::Quaterniond(b.rotation));
+    if (d / kNoticedMotion + r / kNoticedTurn > metres / kNoticedMotion + turn / kNoticedTurn)
+      metres = d, turn = r, scan = index;
+  }
+  bool noticed() const { return metres > kNoticedMotion || turn > kNoticedTurn; }
+};
+
+}  // namespace
+
+/// The two poses around a time.
+struct PoseTimes::Step {
+  std::size_t before = 0, after = 0;
+  double share = 0.0;  // of the way from the first to the second
+};
+
+std::vector<Instant> timesIn(const std::vector<Decimal>& written, TimeUnit unit) {
+  std::vector<Instant> times;
+  for (const Decimal& number : written) {
+    const std::optional<Instant> time = toTime(number, unit);
+    if (!time) return {};
+    times.push_back(*time);
+  }
+  return times;
+}
+
+PoseTimes::PoseTimes(const PoseFile& file) : file_(file), order_(file.entries.size()) {
+  std::iota(order_.begin(), order_.end(), std::size_t(0));
+  std::stable_sort(order_.begin(), order_.end(),
+                   [&](std::size_t a, std::size_t b) { return *file_.entries[a].time < *file_.entries[b].time; });
+}
+
+TimeUnit PoseTimes::unitOf(const std::vector<Decimal>& scans) const {
+  const TimeUnit usual = unitByMagnitude(largestOf(scans));
+  const Instant first = time(0), last = time(order_.size() - 1),
+                margin = (last - first) / 100 + std::chrono::milliseconds(1);
+  const auto within = [&](TimeUnit unit) {
+    const std::vector<Instant> times = timesIn(scans, unit);
+    return static_cast<std::size_t>(std::count_if(
+        times.begin(), times.end(), [&](Instant one) { return one >= first - margin && one <= last + margin; }));
+  };
+  if (within(usual) > 0 ||
+      std::any_of(scans.begin(), scans.end(), [](const Decimal& one) { return one.exponent != 0; }))
+    return usual;
+  std::optional<TimeUnit> found;
+  for (const TimeUnit unit : kTimeUnits) {
+    if (2 * within(unit) < scans.size()) continue;
+    if (found) return usual;
+    found = unit;
+  }
+  return found.value_or(usual);
+}
+
+std::size_t PoseTimes::nearest(Instant wanted) const {
+  const auto after = std::lower_bound(order_.begin(), order_.end(), wanted,
+                                      [this](std::size_t i, Instant value) { return *file_.entries[i].time < value; });
+  const auto i = static_cast<std::size_t>(after - order_.begin());
+  if (i == 0) return 0;
+  if (i == order_.size() || wanted - time(i - 1) < time(i) - wanted) {
+    std::size_t first = i - 1;  // of several at this time
+    while (first > 0 && time(first - 1) == time(i - 1)) --first;
+    return first;
+  }
+  return i;
+}
+
+Instant PoseTimes::limit(const std::vector<Instant>& times, const PoseMatching& options) const {
+  if (options.max_time_gap)
+    return Instant(static_cast<std::int64_t>(std::llround(std::min(*options.max_time_gap, 1e9) * 1e9)));
+  if (const std::optional<Instant> step = medianStep(times)) return *step / 2;
+  std::vector<Instant> own;
+  for (std::size_t i = 0; i < order_.size(); ++i) own.push_back(time(i));
+  const std::optional<Instant> step = medianStep(std::move(own));
+  return step ? *step / 2 : kUsualGap;
+}
+
+std::optional<PoseTimes::Step> PoseTimes::stepAt(Instant wanted) const {
+  const auto bound = std::lower_bound(order_.begin(), order_.end(), wanted,
+                                      [this](std::size_t i, Instant value) { return *file_.entries[i].time < value; });
+  std::size_t after = static_cast<std::size_t>(bound - order_.begin());
+  while (after < order_.size() && !entry(after).pose) ++after;
+  if (after == order_.size()) return std::nullopt;
+  if (time(after) == wanted) return Step{after, after, 0.0};
+  std::size_t before = static_cast<std::size_t>(bound - order_.begin());
+  while (before > 0 && !entry(before - 1).pose) --before;
+  if (before == 0) return std::nullopt;
+  --before;
+  const auto whole = static_cast<double>((time(after) - time(before)).count());
+  return Step{before, after, static_cast<double>((wanted - time(before)).count()) / whole};
+}
+
+void PoseTimes::requireOne(std::size_t i) const {
+  for (std::size_t other = i + 1; other < order_.size() && time(other) == time(i); ++other) {
+    const std::optional<Pose>&a = entry(i).pose, &b = entry(other).pose;
+    if (a && b && (a->translation != b->translation || a->rotation.coeffs() != b->rotation.coeffs()))
+      throw FileError(file_.path, "lines " + std::to_string(entry(i).line) + " and " +
+                                      std::to_string(entry(other).line) + " have the same time but other poses");
+  }
+}
+
+void PoseTimes::match(const std::vector<Instant>& times, const std::vector<ScanKey>& scans, const PoseMatching& options,
+                      MatchedPoses& matched) const {
+  const Instant most = limit(times, options);
+  Instant largest(0);
+  LargestMotion motion;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const std::size_t near = nearest(times[i]);
+    const std::optional<Step> step = stepAt(times[i]);
+    const bool inside = step && time(step->after) - time(step->before) <= 4 * most;
+    const Instant gap = between(times[i], time(near));
+    requireOne(near);
+    if (gap > most) {
+      matched.missing.push_back({i, shortTime(gap) + " from the nearest pose, at most " + shortTime(most)});
+      continue;
+    }
+    largest = std::max(largest, gap);
+    if (options.interpolate && inside) {
+      matched.poses[i] = interpolate(*entry(step->before).pose, *entry(step->after).pose, step->share);
+      continue;
+    }
+    matched.poses[i] = entry(near).pose;
+    if (!matched.poses[i]) {
+      matched.missing.push_back({i, "line " + std::to_string(entry(near).line) + " has no pose (NaN)"});
+      continue;
+    }
+    if (step)
+      motion.add(*matched.poses[i], interpolate(*entry(step->before).pose, *entry(step->after).pose, step->share), i);
+  }
+  matched.how = "matched by time, " + std::string(options.interpolate ? "interpolated, " : "") + "at most " +
+                shortTime(largest) + " apart (limit " + shortTime(most) + ")";
+  if (motion.noticed()) {
+    std::ostringstream text;
+    text.precision(2);
+    text << file_.path.string() << ": the pose nearest in time is up to " << motion.metres << " m and "
+         << motion.turn * 180.0 / std::acos(-1.0) << " degrees from the pose between its neighbours ("
+         << scans[motion.scan].name << "). "
+         << (options.interpolate ? "The poses have a gap there." : "Use --interpolate.");
+    matched.warnings.push_back(text.str());
+  }
+  if (matched.missing.size() == times.size() && !times.empty()) {
+    const auto [low, high] = std::minmax_element(times.begin(), times.end());
+    matched.how = "by time; the scans are from " + timeText(*low) + " to " + timeText(*high) + ", the poses from " +
+                  timeText(time(0)) + " to " + timeText(time(order_.size() - 1));
+  }
+}
+
+}  // namespace gaussmap::detail
