@@ -17,7 +17,7 @@ void warn(const std::string& text) {
 }
 
 void note(const std::string& text) {
-  std::cerr << "gaussmap: " << text << '\n';
+  std::cerr << "gaussmap: note: " << text << '\n';
 }
 
 double now() {

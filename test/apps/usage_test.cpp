@@ -52,7 +52,7 @@ TEST_F(Apps, ShowCommonOptionsFirstAndAllWithHelpAll) {
 TEST_F(Apps, RefuseCommandsThatAreNone) {
   expectUsageError("no command given", {});
   expectUsageError("'pcd2mapp' is not a command", {"pcd2mapp"});
-  expectUsageError("pcd2map, refine", {"pcd2mapp", scene("scans"), "-o", own("x.gmap")});
+  expectUsageError("pcd2map, scans, refine", {"pcd2mapp", scene("scans"), "-o", own("x.gmap")});
   expectUsageError("'--bad'", {"--bad"});
 }
 
