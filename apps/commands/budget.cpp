@@ -87,14 +87,14 @@ MergeCost mergeCost(const BudgetInput& input) {
 }
 
 Option addLimitOptions(Command& command, BudgetInput& input) {
-  const Option budget =
-      command.number("--budget", input.budget, 1.0, 1e6, "Gaussians per occupied cell of a coarse scale, on average");
+  const Option budget = command.number("--budget", input.budget, 1.0, 1e6,
+                                       "maximum mean number of Gaussians per occupied cell, at each coarse scale");
   command.texts("--max-gaussians", input.max_gaussians,
-                "maximum Gaussians per coarse scale: N, or SCALE=N for one scale; repeatable");
+                "maximum Gaussians: N at each coarse scale, or SCALE=N at one (1 = finest coarse scale); repeatable");
   command.text("--max-bytes", input.max_bytes, "maximum size of the map file [bytes], with suffix k, M or G");
   command
       .number("--max-error", input.max_error, 1e-9, 1e9,
-              "maximum distance of 95 % of a coarse scale's samples to the finest scale [m]")
+              "maximum error: 95 % of the random points of each coarse scale lie this near to the finest scale [m]")
       .hideDefault();
   command.exclusive({"--budget", "--max-gaussians", "--max-bytes", "--max-error"});
   return budget;
@@ -103,7 +103,7 @@ Option addLimitOptions(Command& command, BudgetInput& input) {
 void addCostOption(Command& command, BudgetInput& input) {
   command
       .choice("--cost", input.cost, Command::wordsOf(kCosts),
-              "merge cost: volume (default) = growth of volume, runnalls = loss of likelihood")
+              "merge first the pair that adds least volume (volume, default) or loses least likelihood (runnalls)")
       .rare();
 }
 
