@@ -34,7 +34,7 @@ std::string fishQuoted(const std::string& text) {
 
 /// Returns what is offered for a value, such as " -x -a 'sensor map'".
 std::string fishValue(const OptionEntry& option, bool is_positional) {
-  const std::string begin = is_positional ? "" : " -x";
+  std::string begin = is_positional ? "" : " -x";
   if (!option.choices.empty()) return begin + " -a '" + joined(option.choices, " ") + "'";
   if (option.kind == ValueKind::Folder) return begin + " -a '(__fish_complete_directories)'";
   if (option.kind == ValueKind::File && option.endings.empty()) return is_positional ? " -F" : " -r -F";

@@ -77,7 +77,7 @@ ProgramTree programTree(CLI::App& program) {
 
 std::string valueText(const OptionEntry& option) {
   if (option.kind == ValueKind::None) return "";
-  const std::string value = option.choices.empty() ? option.value : "{" + joined(option.choices, ",") + "}";
+  std::string value = option.choices.empty() ? option.value : "{" + joined(option.choices, ",") + "}";
   if (option.is_unlimited) return value + " ...";
   if (option.min_values == 0) return "[" + value + "]";
   if (option.max_values == 1) return value;

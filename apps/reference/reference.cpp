@@ -91,6 +91,7 @@ void writeReference(const ReferenceCommand& command, CLI::App& app) {
   for (const std::string& folder : {command.man, command.completions})
     if (!folder.empty()) makeFolder(folder);
   std::vector<std::string> paths;
+  paths.reserve(files.size());
   for (const TextFile& file : files) paths.push_back(file.path.string());
   checkOutputs(paths, command.force, {});
   writeAll(files);
