@@ -87,14 +87,14 @@ MergeCost mergeCost(const BudgetInput& input) {
 }
 
 Option addLimitOptions(Command& command, BudgetInput& input) {
-  const Option budget =
-      command.number("--budget", input.budget, 1.0, 1e6, "Gaussians per occupied cell of a coarse scale, on average");
+  const Option budget = command.number("--budget", input.budget, 1.0, 1e6,
+                                       "number of Gaussians per occupied cell, on average at each coarse scale");
   command.texts("--max-gaussians", input.max_gaussians,
-                "maximum Gaussians per coarse scale: N, or SCALE=N for one scale; repeatable");
+                "maximum number of Gaussians: N for each coarse scale, or SCALE=N for one scale (>= 1); repeatable");
   command.text("--max-bytes", input.max_bytes, "maximum size of the map file [bytes], with suffix k, M or G");
   command
       .number("--max-error", input.max_error, 1e-9, 1e9,
-              "maximum distance of 95 % of a coarse scale's samples to the finest scale [m]")
+              "maximum error [m]: at each coarse scale, 95 % of random samples lie this near to the finest scale")
       .hideDefault();
   command.exclusive({"--budget", "--max-gaussians", "--max-bytes", "--max-error"});
   return budget;
@@ -102,8 +102,9 @@ Option addLimitOptions(Command& command, BudgetInput& input) {
 
 void addCostOption(Command& command, BudgetInput& input) {
   command
-      .choice("--cost", input.cost, Command::wordsOf(kCosts),
-              "merge cost: volume (default) = growth of volume, runnalls = loss of likelihood")
+      .choice(
+          "--cost", input.cost, Command::wordsOf(kCosts),
+          "what to merge first: the pair that adds least volume (default), or that loses least likelihood (runnalls)")
       .rare();
 }
 

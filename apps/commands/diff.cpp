@@ -26,10 +26,10 @@ struct DiffCommand {
 const Help kDiffHelp = {
     "Compare two maps of the same place: what is new, gone or changed",
     "gaussmap diff monday.gmap tuesday.gmap -o changes.pcd --level 0.001",
-    R"(The output holds every Gaussian of the second map, and those of the first map that are gone, with the fields
-x y z covariance[6] weight p_value label. Labels: 0 the same, or too few points to decide; 1 new; 2 gone; 3 changed.
-Places that the sensors of the second map never observed count as gone too. At refined scales, clusters can differ
-because the same surface was divided in another way, so compare the finest scale.)"};
+    R"(The file of --output holds all Gaussians of the second map and the gone Gaussians of the first map. Its fields
+are x y z covariance[6] weight p_value label. Labels: 0 the same, or too few points to decide; 1 new; 2 gone;
+3 changed. Places that the sensors of the second map never observed count as gone too. Prefer the finest scale: at
+refined coarse scales, the same surface can be divided into other clusters, which then count as changed.)"};
 
 /// Warns if the maps share no cell, or nearly none, because then everything is new or gone.
 void warnOfOverlap(const DiffCommand& options, const GaussianMap<3>& first, const GaussianMap<3>& second) {
@@ -87,7 +87,7 @@ void addDiff(CLI::App& app) {
   auto options = std::make_shared<DiffCommand>();
   Command command(app, "diff", kDiffHelp);
   command.text("first", options->first, "map (.gmap, or PCD of Gaussians)").required();
-  command.text("second", options->second, "later map, with the same frame and cells").required();
+  command.text("second", options->second, "later map, in the same frame and with cells of the same side").required();
   command.text("-o,--output", options->output, "labelled Gaussians to write (.pcd)");
   command.force(options->force);
   command.scale(options->diff.scale, "scale to compare, 0 = finest");
@@ -95,8 +95,8 @@ void addDiff(CLI::App& app) {
                  "significance level: a change is reported if its p-value is at most this");
   command
       .number("--points", options->diff.points, 1.0, 1e9,
-              R"(maximum number of points of one object that count as independent;
-          a larger number finds smaller movements, but also errors of the poses)")
+              R"(maximum number of points of a Gaussian that the test counts as independent;
+          a larger number finds smaller movements, but also reports errors of the poses as changes)")
       .rare();
   command.threads(options->diff.threads);
   command.json(options->json);

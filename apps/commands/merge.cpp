@@ -26,9 +26,10 @@ struct MergeCommand : MapTaskOptions {
 const Help kMergeHelp = {
     "Merge several maps into one",
     R"(gaussmap merge monday.gmap tuesday.gmap -o both.gmap --transform "12.5 -3 0 0 0 0.7071 0.7071")",
-    R"(If the maps were built from parts of the scans, the finest scale of the result is exactly that of a map of all
-scans. Maps that were moved or are final have no exact moments. They are merged as Gaussians, and --exact refuses
-them. Give --transform once per map, except for the first map: its pose in the frame of the first map.)"};
+    R"(If all maps have exact moments, the finest scale of the result is the same as in one map of all their scans.
+Final maps, and maps that are or were moved or resampled, have no exact moments. If there is such a map, the result
+holds Gaussians only; --exact refuses it. Compressed maps cannot be merged. The first map does not move. For each of
+the others, in the same order, give --transform with its pose in the frame of the first map.)"};
 
 std::string gridOf(const GaussianMap<3>& map) {
   const MapOptions& options = map.options();
@@ -106,7 +107,8 @@ void addMerge(CLI::App& app) {
   command.texts("maps", options->maps, "maps (.gmap, or PCD of Gaussians)").required();
   addMapOutput(command, *options);
   addMotionOptions(command, options->motion);
-  command.flag("--resample", options->resample, "convert maps with another grid to the grid of the first map");
+  command.flag("--resample", options->resample,
+               "convert maps with other cells, ratio, scales or noise floor to those of the first map");
   command.flag("--exact", options->exact, "refuse maps that cannot be merged exactly");
   addRunOptions(command, *options);
   command.files({"maps"}, {".gmap", ".pcd"});

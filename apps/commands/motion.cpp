@@ -54,15 +54,16 @@ PoseCovariance covarianceIn(const std::string& text) {
 void addMotionOptions(Command& command, MotionInput& input) {
   const Option transform = command
                                .texts("--transform", input.transforms,
-                                      "pose of the map in the target frame, \"x y z qx qy qz qw\" [m]; once per map")
+                                      "pose of a map in the target frame, \"x y z qx qy qz qw\" [m]; one per moved map")
                                .onePerUse();
   command
-      .text("--transform-file", input.file, "file of these poses, one line per map: TUM, KITTI, or map name and pose")
+      .text("--transform-file", input.file,
+            "file of poses, in place of --transform, one line per moved map: TUM, KITTI, or map name and pose")
       .excludes(transform);
   command
       .text("--pose-covariance", input.covariance,
-            R"(covariance of these poses, which widens the Gaussians: in quotes, 6 x 6 numbers for x y z [m]
-            and the rotations about x y z [rad], or the 6 numbers of the diagonal)")
+            R"(covariance of each given pose, which widens the moved Gaussians, in quotes: 6 x 6 numbers for x y z [m]
+            and the rotations about x y z [rad], or only the 6 numbers of the diagonal)")
       .rare();
   command.files({"--transform-file"});
 }

@@ -19,14 +19,16 @@ namespace gaussmap::app {
 namespace {
 
 const Help kRegisterHelp = {
-    "Find the poses of scans, or of other maps, in the frame of a map",
+    "Find the poses of scans or other maps in the frame of a map",
     "gaussmap register scans/ street.gmap --tum poses.tum",
-    R"(Prints the pose of every scan (x y z qx qy qz qw), its standard deviations, and its fitness: the share of the
-scan that lies on the map. The search for the first scan starts at --guess, or else at the VIEWPOINT of its file.
-For every other scan it starts at the pose of the scan before. "degenerate" means that some direction is
-unobservable, for example along a corridor.
+    R"(Prints one line per scan: its pose (x y z qx qy qz qw), the standard deviations of the pose, and the fitness.
+The fitness is the share of the scan that lies on the map, from 0 to 1. The search for the first scan starts at
+--guess. Without --guess, it starts at the VIEWPOINT in the header of the file. The search for each later scan starts
+at the pose found for the scan before. "degenerate" means that some direction is unobservable, for example along a
+corridor.
 
-Maps can be given in place of scans. Without --guess, the search for the first map starts at its present place.)"};
+Maps can be given in place of scans. If the first input is a map and there is no --guess, its search starts at the
+identity: the map is not moved.)"};
 
 struct RegisterCommand {
   std::vector<std::string> inputs;  // scans or maps; the last one is the map to register with
@@ -126,19 +128,23 @@ void run(const RegisterCommand& command) {
 void addRegister(CLI::App& app) {
   auto options = std::make_shared<RegisterCommand>();
   Command command(app, "register", kRegisterHelp);
-  command.texts("inputs", options->inputs, "scans (.pcd files or directories of them) or maps, then the map")
+  command
+      .texts("inputs", options->inputs,
+             "scans (.pcd files or directories of them) or maps to register; last: the map that defines the frame")
       .required()
       .atLeast(2);
   command.numbers("--guess", options->guess, 7, -1e12, 1e12,
                   "pose at which the search for the first scan starts: x y z [m] qx qy qz qw");
-  command.text("--tum", options->tum, "TUM file to write: one line per scan, number x y z qx qy qz qw");
+  command.text("--tum", options->tum,
+               "TUM file to write, one line per scan: number of the scan (from 0), x y z [m] qx qy qz qw");
   command.force(options->force, "replace an existing file of poses");
   command
       .number("--scan-resolution", options->options.resolution, 0.0, 1e6,
-              "side of the cells of the scan [m], 0 = side of the finest cells of the map")
+              "side of the cells whose Gaussians represent the scan [m], 0 = side of the finest cells of the map")
       .rare();
   command
-      .number("--kernel", options->options.kernel, 1e-3, 1e6, "a residual of this many standard deviations counts half")
+      .number("--kernel", options->options.kernel, 1e-3, 1e6,
+              "robust kernel: halves the cost of a residual of this many standard deviations")
       .rare();
   addRangeOptions(command, options->limits);
   command.threads(options->options.threads);

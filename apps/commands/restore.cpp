@@ -22,10 +22,11 @@ struct RestoreCommand : MapTaskOptions {
 };
 
 const Help kRestoreHelp = {
-    "Restore clusters that pcd2map --online has deleted",
+    "Restore clusters (Gaussians) that pcd2map --online has deleted from a map",
     "gaussmap restore street.gmap removed.pcd -o whole.gmap --box -5 0 -1 5 20 3",
     R"(The finest scale becomes exactly what it would be if the clusters had not been deleted. The coarse scales are
-rebuilt with the same number of Gaussians. A cluster that is restored twice counts twice.)"};
+rebuilt with as many Gaussians as before, but at least one per cell. Do not restore a cluster twice: its points
+would count twice.)"};
 
 std::function<bool(const Vector<3>&)> region(const std::vector<double>& box) {
   if (box.empty()) return [](const Vector<3>&) { return true; };

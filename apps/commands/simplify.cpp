@@ -22,8 +22,9 @@ struct SimplifyCommand : MapTaskOptions {
 const Help kSimplifyHelp = {
     "Merge Gaussians of a map until it is small enough",
     "gaussmap simplify street.gmap -o small.gmap --max-gaussians 1=20000",
-    R"(Needs only the Gaussians of the map, so it also works on final and compressed maps. (gaussmap refine rebuilds the
-coarse scales from the finest scale.) Every cell keeps at least one Gaussian.)"};
+    R"(Needs one of --budget, --max-gaussians, --max-bytes and --max-error. Merges the Gaussians that the map has, so it
+also works on final and compressed maps. To rebuild the coarse scales from the finest scale, use gaussmap refine.
+Every cell keeps at least one Gaussian.)"};
 
 /// Simplifies the map within the limit. Adds `step`, completed with the limit, to the history.
 GaussianMap<3> simplified(const GaussianMap<3>& map, const SimplifyCommand& command, MapMetadata& metadata, Json step) {

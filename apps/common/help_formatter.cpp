@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/help_formatter.h"
 
+#include <algorithm>
 #include <sstream>
 
 namespace gaussmap::app {
@@ -103,7 +104,7 @@ std::vector<std::string> choicesOf(const CLI::Option& option) {
   const std::size_t open = type.find('{'), close = type.find('}', open);
   if (open == std::string::npos || close == std::string::npos) return {};
   std::vector<std::string> choices = CLI::detail::split(type.substr(open + 1, close - open - 1), ',');
-  for (std::string& choice : choices) choice = choice.substr(0, choice.find("->"));  // of named values
+  for (std::string& choice : choices) choice.resize(std::min(choice.size(), choice.find("->")));  // of named values
   return choices;
 }
 

@@ -13,7 +13,7 @@ _gaussmap_words() {
   mapfile -t COMPREPLY < <(compgen -W "$1" -- "$cur")
 }
 
-# Offers directories, and the files with these endings, or all files if there are none.
+# Offers directories and the files with these endings; all files if no endings are given or nothing matches.
 _gaussmap_files() {
   local ending
   compopt -o filenames 2>/dev/null
@@ -33,7 +33,7 @@ _gaussmap_folders() {
 const char* const kBashStart = R"(_gaussmap() {
   local cur=${COMP_WORDS[COMP_CWORD]} prev=${COMP_WORDS[COMP_CWORD - 1]} command= i
   COMPREPLY=()
-  # --option=value are three words.
+  # Bash splits --option=value into three words.
   if [[ $cur == = ]]; then
     cur=
   elif [[ $prev == = ]] && ((COMP_CWORD > 2)); then
@@ -47,13 +47,7 @@ const char* const kBashStart = R"(_gaussmap() {
   done
 )";
 
-std::string joined(const std::vector<std::string>& words, const std::string& between) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : between) + word;
-  return text;
-}
-
-/// The command of the script that offers values.
+/// Returns the command of the script that offers the values of an option.
 std::string bashValues(const OptionEntry& option) {
   if (!option.choices.empty()) return "_gaussmap_words \"" + joined(option.choices, " ") + "\"";
   if (option.kind == ValueKind::Folder) return "_gaussmap_folders";
@@ -62,7 +56,8 @@ std::string bashValues(const OptionEntry& option) {
   return "";
 }
 
-/// Offers for the arguments of a command, whichever is next: their words, or files with the endings of any of them.
+/// Returns the command that offers the arguments of a command. It offers the same for every argument: all their words,
+/// or files with the endings of any of them.
 std::string bashPositionals(const CommandEntry& command) {
   OptionEntry any;
   for (const OptionEntry& option : command.positionals) {
@@ -78,7 +73,7 @@ std::string bashPositionals(const CommandEntry& command) {
 }
 
 std::string bashCase(const CommandEntry& command) {
-  std::map<std::string, std::string> names_of;  // by what is offered after them
+  std::map<std::string, std::string> names_of;  // options by the command that offers their values
   std::string options;
   for (const OptionGroup& group : command.groups)
     for (const OptionEntry& option : group.options) {

@@ -17,7 +17,7 @@ function __gaussmap_command_is
     not set -q argv[1]
 end
 
-# Directories, and the files with these endings, or all files if there are none.
+# Offers directories and the files with these endings; all files if nothing matches.
 function __gaussmap_files
     set -l files (complete -C "'' "(commandline -ct))
     set -l endings (string escape --style=regex -- $argv | string join '|')
@@ -32,15 +32,13 @@ std::string fishQuoted(const std::string& text) {
   return "'" + replaced(replaced(text, "\\", "\\\\"), "'", "\\'") + "'";
 }
 
-/// " -x -a 'sensor map'": what is offered for a value.
+/// Returns what is offered for a value, such as " -x -a 'sensor map'".
 std::string fishValue(const OptionEntry& option, bool is_positional) {
-  const std::string begin = is_positional ? "" : " -x";
-  std::string words;
-  for (const std::string& word : option.choices.empty() ? option.endings : option.choices) words += " " + word;
-  if (!option.choices.empty()) return begin + " -a '" + words.substr(1) + "'";
+  std::string begin = is_positional ? "" : " -x";
+  if (!option.choices.empty()) return begin + " -a '" + joined(option.choices, " ") + "'";
   if (option.kind == ValueKind::Folder) return begin + " -a '(__fish_complete_directories)'";
-  if (option.kind == ValueKind::File && words.empty()) return is_positional ? " -F" : " -r -F";
-  if (option.kind == ValueKind::File) return begin + " -k -a '(__gaussmap_files" + words + ")'";
+  if (option.kind == ValueKind::File && option.endings.empty()) return is_positional ? " -F" : " -r -F";
+  if (option.kind == ValueKind::File) return begin + " -k -a '(__gaussmap_files " + joined(option.endings, " ") + ")'";
   return begin;
 }
 

@@ -7,13 +7,14 @@
 namespace gaussmap::app {
 namespace {
 
-/// Where the text of "term  text" begins; npos if the line has no term.
+/// Returns where the text of "term  text" begins; npos if the line has no term.
 std::size_t textAfterTerm(const std::string& line, std::size_t indent) {
   const std::size_t gap = line.find("  ", indent);
   return gap == std::string::npos ? std::string::npos : line.find_first_not_of(' ', gap);
 }
 
-/// An indented line after "More examples: one" that begins below "one": all of them are lines of their own.
+/// Returns true for an indented line that begins below "one" of a paragraph "More examples: one". Then "one" and this
+/// line are both separate lines.
 bool continuesColumn(const TextBlock& block, std::size_t indent) {
   return block.kind == BlockKind::Paragraph && indent > 2 && indent < block.text.size() &&
          block.text.compare(indent - 2, 2, ": ") == 0;
@@ -106,6 +107,12 @@ std::string withFullStop(std::string text) {
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
   for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
     text.replace(at, from.size(), to);
+  return text;
+}
+
+std::string joined(const std::vector<std::string>& words, const std::string& between) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) text += (i > 0 ? between : "") + words[i];
   return text;
 }
 

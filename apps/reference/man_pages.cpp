@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kSourceWidth = 78;
 
-/// The letters of roff. The hyphens of options stay hyphens that can be copied.
+/// Escapes a text for roff. The hyphens of options become hyphens that can be copied.
 std::string roffEscaped(const std::string& text) {
   std::string roff;
   for (const TextPiece& piece : piecesOf(replaced(text, "\\", "\\e")))
@@ -19,18 +19,18 @@ std::string roffEscaped(const std::string& text) {
   return roff;
 }
 
-/// A line of text that is no macro.
+/// Returns a line of text that roff does not read as a macro.
 std::string roffLine(const std::string& line) {
   return (!line.empty() && (line[0] == '.' || line[0] == '\'') ? "\\&" : "") + line + "\n";
 }
 
-/// One argument of a macro.
+/// Returns one argument of a macro.
 std::string argument(const std::string& text) {
   const std::string roff = "\\&" + replaced(replaced(text, "\\", "\\e"), "\"", "\\(dq");
   return roff.find(' ') == std::string::npos ? roff : "\"" + roff + "\"";
 }
 
-/// Filled text; a sentence begins on a line of its own, as mdoc(7) asks for.
+/// Wraps a text. Every sentence starts on a new line, as mdoc(7) asks for.
 std::string roffText(const std::string& text) {
   std::istringstream words(roffEscaped(text));
   std::string lines, line, word;
@@ -66,7 +66,7 @@ std::string roffDetails(const std::string& details) {
   return isList(last) ? roff + ".El\n" : roff;
 }
 
-/// "Fl o , Fl -output Ar FILE": after .It or .Op.
+/// Returns the names of an option for .It or .Op, such as "Fl o , Fl -output Ar FILE".
 std::string optionMacros(const OptionEntry& option) {
   std::string macros;
   for (const std::string& name : option.names)
@@ -79,11 +79,8 @@ std::string optionList(const std::vector<OptionEntry>& options) {
   std::string roff = ".Bl -tag -width Ds\n";
   for (const OptionEntry& option : options) {
     roff += ".It " + optionMacros(option) + "\n" + roffText(withFullStop(option.description));
-    if (!option.choices.empty() && option.names.front()[0] != '-') {
-      std::string words;
-      for (const std::string& choice : option.choices) words += (words.empty() ? "" : ", ") + choice;
-      roff += roffText("One of " + words + ".");
-    }
+    if (!option.choices.empty() && option.names.front()[0] != '-')
+      roff += roffText("One of " + joined(option.choices, ", ") + ".");
     if (option.is_required && option.names.front()[0] == '-') roff += "Required.\n";
     if (!option.default_value.empty()) roff += "Default: " + roffLine(roffEscaped(option.default_value) + ".");
   }

@@ -7,9 +7,9 @@
 
 namespace gaussmap::app {
 
-/// Page gaussmap.1, in the macros of mdoc(7). `version` is printed at the foot; `date`, such as "May 4, 2026", too.
+/// Returns the page gaussmap.1 in the macros of mdoc(7). Its foot shows `version` and `date`, such as "May 4, 2026".
 std::string programManPage(const ProgramTree& tree, const std::string& version, const std::string& date);
-/// Page gaussmap-COMMAND.1.
+/// Returns the page gaussmap-COMMAND.1.
 std::string commandManPage(const ProgramTree& tree, const CommandEntry& command, const std::string& version,
                            const std::string& date);
 

@@ -10,7 +10,7 @@ std::string code(const std::string& text) {
   return "`" + text + "`";
 }
 
-/// Text between the marks of Markdown. Names of options become code, else "--" would be printed as a dash.
+/// Escapes a text for Markdown. Names of options become code, because "--" in a text is printed as a dash.
 std::string escaped(const std::string& text) {
   std::string markdown;
   for (const TextPiece& piece : piecesOf(text)) {
@@ -26,7 +26,7 @@ std::string escaped(const std::string& text) {
   return markdown;
 }
 
-/// Code in a cell of a table, where a bar ends the cell.
+/// Returns code for the cell of a table, where a bar would end the cell.
 std::string codeCell(const std::string& text) {
   return text.empty() ? "" : code(replaced(text, "|", "\\|"));
 }

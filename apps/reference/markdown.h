@@ -7,7 +7,7 @@
 
 namespace gaussmap::app {
 
-/// The command reference as one page of Markdown (GitHub's, also that of MyST).
+/// Returns the command reference as one page of Markdown, for GitHub and MyST.
 std::string markdownReference(const ProgramTree& tree);
 
 }  // namespace gaussmap::app

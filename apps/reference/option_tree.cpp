@@ -6,11 +6,12 @@
 
 #include "commands/view_options.h"
 #include "common/help_formatter.h"
+#include "reference/help_text.h"
 
 namespace gaussmap::app {
 namespace {
 
-/// What Command::files() has left.
+/// Returns the endings that Command::files() has stored in the option.
 std::vector<std::string> endingsOf(CLI::Option& option) {
   const std::string endings = option.get_validator(0)->get_name();
   return endings.empty() ? std::vector<std::string>() : CLI::detail::split(endings, ' ');
@@ -29,10 +30,9 @@ OptionEntry entryOf(CLI::Option& option) {
   entry.choices = choicesOf(option);
   if (entry.kind == ValueKind::File) entry.endings = endingsOf(option);
   entry.default_value = option.get_default_str();
-  entry.least_values = option.get_expected_min();
-  entry.most_values = option.get_expected_max();
-  entry.is_unlimited = entry.most_values >= CLI::detail::expected_max_vector_size;
-  entry.is_repeatable = entry.is_unlimited;
+  entry.min_values = option.get_expected_min();
+  entry.max_values = option.get_expected_max();
+  entry.is_unlimited = entry.max_values >= CLI::detail::expected_max_vector_size;
   return entry;
 }
 
@@ -77,19 +77,19 @@ ProgramTree programTree(CLI::App& program) {
 
 std::string valueText(const OptionEntry& option) {
   if (option.kind == ValueKind::None) return "";
-  const std::string value = option.choices.empty() ? option.value : "{" + CLI::detail::join(option.choices, ",") + "}";
+  std::string value = option.choices.empty() ? option.value : "{" + joined(option.choices, ",") + "}";
   if (option.is_unlimited) return value + " ...";
-  if (option.least_values == 0) return "[" + value + "]";
-  if (option.most_values == 1) return value;
+  if (option.min_values == 0) return "[" + value + "]";
+  if (option.max_values == 1) return value;
   const auto words = 1 + std::count(value.begin(), value.end(), ' ');
-  if (option.least_values == option.most_values && words == option.least_values) return value;  // "X Y Z"
-  const std::string least = std::to_string(option.least_values), most = std::to_string(option.most_values);
-  if (option.least_values == option.most_values) return value + " x " + least;
-  return option.most_values >= 1000 ? value + " ..." : value + " x " + least + " to " + most;
+  if (option.min_values == option.max_values && words == option.min_values) return value;  // "X Y Z"
+  const std::string min = std::to_string(option.min_values), max = std::to_string(option.max_values);
+  if (option.min_values == option.max_values) return value + " x " + min;
+  return option.max_values >= 1000 ? value + " ..." : value + " x " + min + " to " + max;
 }
 
 std::string optionText(const OptionEntry& option) {
-  const std::string names = CLI::detail::join(option.names, ","), value = valueText(option);
+  const std::string names = joined(option.names, ","), value = valueText(option);
   return value.empty() ? names : names + " " + value;
 }
 

@@ -18,13 +18,12 @@ struct OptionEntry {
   std::vector<std::string> names;  ///< "-o", "--output"; a positional argument has one name without dashes
   std::string description;
   ValueKind kind = ValueKind::None;
-  std::string value;                 ///< what the help calls the value: "FLOAT"
-  std::vector<std::string> choices;  ///< of which the value is one; empty: any value
-  std::vector<std::string> endings;  ///< of files: ".gmap"; empty: any
+  std::string value;                 ///< name of the value in the help, such as "FLOAT"
+  std::vector<std::string> choices;  ///< the possible values; empty: any value
+  std::vector<std::string> endings;  ///< endings of the files, such as ".gmap"; empty: any
   std::string default_value;         ///< empty: none, or the description says it
-  int least_values = 0, most_values = 0;
-  bool is_unlimited = false;  ///< any number of values from `least_values`
-  bool is_repeatable = false;
+  int min_values = 0, max_values = 0;
+  bool is_unlimited = false;  ///< any number of values, at least `min_values`; the option can be repeated
   bool is_required = false;
 };
 
@@ -42,18 +41,18 @@ struct CommandEntry {
 };
 
 struct ProgramTree {
-  CommandEntry program;                ///< its own options
+  CommandEntry program;                ///< options of the program without a command
   std::vector<CommandEntry> commands;  ///< in the order of the help, without hidden ones
 };
 
-/// The tree of the program; the options of `view` are those of gaussmap-view.
+/// Returns the tree of the program. The options of `view` are those of gaussmap-view.
 ProgramTree programTree(CLI::App& program);
 
-/// "FLOAT", "{sensor,map}", "FLOAT x 7", "TEXT ...", "[TEXT]"; empty for a flag.
+/// Returns "FLOAT", "{sensor,map}", "FLOAT x 7", "TEXT ..." or "[TEXT]"; empty for a flag.
 std::string valueText(const OptionEntry& option);
-/// "-o,--output FILE".
+/// Returns the names and the value, such as "-o,--output FILE".
 std::string optionText(const OptionEntry& option);
-/// What follows the name of the command: "[OPTIONS] -o FILE map [cloud...]".
+/// Returns the usage without the name of the command, such as "[OPTIONS] -o FILE map [cloud...]".
 std::string usageText(const CommandEntry& command);
 
 }  // namespace gaussmap::app

@@ -3,6 +3,7 @@
 // files, for the build and the docs folder.
 #include <cstdlib>
 #include <ctime>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 
@@ -42,7 +43,7 @@ struct TextFile {
   std::string text;
 };
 
-/// "May 4, 2026": the form of mdoc(7).
+/// Returns the date in the form of mdoc(7), such as "May 4, 2026".
 std::string dateOfPages() {
   const char* const given = std::getenv("SOURCE_DATE_EPOCH");
   const std::time_t time =
@@ -65,7 +66,7 @@ std::vector<TextFile> filesOf(const ReferenceCommand& command, const ProgramTree
       files.push_back(
           {fs::path(command.man) / (name + "-" + one.name + ".1"), commandManPage(tree, one, version, date)});
   }
-  if (!command.completions.empty()) {  // under the names by which the shells find them
+  if (!command.completions.empty()) {  // the shells look for these names
     files.push_back({fs::path(command.completions) / name, bashCompletion(tree)});
     files.push_back({fs::path(command.completions) / ("_" + name), zshCompletion(tree)});
     files.push_back({fs::path(command.completions) / (name + ".fish"), fishCompletion(tree)});
@@ -74,7 +75,7 @@ std::vector<TextFile> filesOf(const ReferenceCommand& command, const ProgramTree
   return files;
 }
 
-/// Writes all files, then gives them their names: if one cannot be written, none appears.
+/// Writes all files under temporary names, then renames them. If one cannot be written, none appears.
 void writeAll(const std::vector<TextFile>& files) {
   std::vector<std::unique_ptr<detail::AtomicFile>> written;
   for (const TextFile& file : files) {
@@ -90,6 +91,7 @@ void writeReference(const ReferenceCommand& command, CLI::App& app) {
   for (const std::string& folder : {command.man, command.completions})
     if (!folder.empty()) makeFolder(folder);
   std::vector<std::string> paths;
+  paths.reserve(files.size());
   for (const TextFile& file : files) paths.push_back(file.path.string());
   checkOutputs(paths, command.force, {});
   writeAll(files);

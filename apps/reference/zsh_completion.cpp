@@ -5,25 +5,22 @@
 namespace gaussmap::app {
 namespace {
 
-/// Text between single quotes, in a specification of _arguments.
+/// Escapes a text for a specification of _arguments between single quotes.
 std::string zshEscaped(std::string text) {
   text = replaced(text, "\\", "\\\\");
   for (const char* const mark : {"[", "]", ":"}) text = replaced(text, mark, std::string("\\") + mark);
   return replaced(text, "'", "'\\''");
 }
 
-/// ":FILE:_files -g "*.gmap"": the name of a value and what is offered for it.
+/// Returns the name of a value and its completion, such as :FILE:_files -g "*.gmap".
 std::string zshValue(const OptionEntry& option, const std::string& name) {
   std::string action = " ";
   if (!option.choices.empty()) {
-    action = "(";
-    for (const std::string& choice : option.choices) action += (action.size() > 1 ? " " : "") + choice;
-    action += ")";
+    action = "(" + joined(option.choices, " ") + ")";
   } else if (option.kind == ValueKind::Folder) {
     action = "_files -/";
   } else if (option.kind == ValueKind::File) {
-    std::string endings;
-    for (const std::string& ending : option.endings) endings += (endings.empty() ? "" : "|") + ending;
+    std::string endings = joined(option.endings, "|");
     if (option.endings.size() > 1) endings = "(" + endings + ")";  // "*(.pcd)" would be a qualifier
     action = endings.empty() ? "_files" : "_files -g \"*" + endings + "\"";
   }
@@ -31,18 +28,17 @@ std::string zshValue(const OptionEntry& option, const std::string& name) {
 }
 
 std::string zshOption(const OptionEntry& option) {
-  std::string names, marked;  // marked: how a value follows
+  std::string marked;  // names with the character before a value
   for (const std::string& name : option.names) {
     const bool is_long = name.compare(0, 2, "--") == 0;
-    names += (names.empty() ? "" : " ") + name;
     marked += (marked.empty() ? "" : ",") + name + (option.kind == ValueKind::None ? "" : is_long ? "=" : "+");
   }
   const bool is_one = option.names.size() == 1;
-  std::string text = option.is_repeatable ? "'*'" : is_one ? "" : "'(" + names + ")'";
+  std::string text = option.is_unlimited ? "'*'" : is_one ? "" : "'(" + joined(option.names, " ") + ")'";
   text += (is_one ? "'" + marked : "{" + marked + "}'") + "[" + zshEscaped(option.description) + "]";
-  if (option.kind != ValueKind::None && option.least_values == 0) text += ":";  // the value may be missing
+  if (option.kind != ValueKind::None && option.min_values == 0) text += ":";  // the value may be missing
   if (option.kind != ValueKind::None) text += zshValue(option, option.value);
-  for (int i = 1; i < option.least_values; ++i) text += zshValue(option, option.value);
+  for (int i = 1; i < option.min_values; ++i) text += zshValue(option, option.value);
   return text + "'";
 }
 

@@ -12,15 +12,15 @@ namespace {
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
-/// Runs zsh on a pseudo terminal, types $3 and Tab there, and prints the line that is then in the editor.
+/// Runs zsh on a pseudo terminal, types $3, Tab and Ctrl-X there, and prints the completed line. Ctrl-X writes it into
+/// the named pipe $2, so nothing has to wait or poll.
 const char* const kTypeInZsh = R"(zmodload zsh/zpty
 zpty -b shell TERM=vt100 zsh -f -i
 zpty -w shell "fpath=(${(q)1} \$fpath); autoload -Uz compinit; compinit -u -D
 report() { print -r -- \"\$BUFFER\" > ${(q)2}; exit }; zle -N report; bindkey '^X' report"
 zpty -w -n shell "$3"$'\t\x18'
-for i in {1..600}; do [[ -s $2 ]] && break; sleep 0.05; done
-zpty -d shell
 cat $2
+zpty -d shell
 )";
 
 std::string lineIn(const std::string& text, std::size_t at) {
@@ -91,8 +91,9 @@ class Reference : public AppTest {
   std::string zshCompletes(const std::string& line) {
     const std::string typist = directory_.write("type.zsh", kTypeInZsh), result = own("line");
     fs::remove(result);
-    linesOf("cd " + own("") + " && zsh -f " + typist + " " + script("") + " " + result + " " + shellQuoted(line));
-    return fs::exists(result) ? lineIn(contentsOf(result), 0) : "";
+    const Words lines = linesOf("cd " + own("") + " && mkfifo " + result + " && zsh -f " + typist + " " + script("") +
+                                " " + result + " " + shellQuoted(line));
+    return lines.empty() ? "" : lines.front();
   }
   void makeFiles() {
     for (const char* const name : {"map.gmap", "one scan.pcd", "notes.txt"}) directory_.write(name, "");

@@ -13,9 +13,10 @@ namespace gaussmap {
 ///
 /// `isInside` receives the mean [m, map frame] of each Gaussian in a leaf cell (see GaussianMap::isLeaf()) and returns
 /// true to keep the Gaussian. Kept Gaussians do not change, and keep their exact moments. A coarse Gaussian becomes the
-/// moment match of its remaining children if some are lost, and is deleted if all are lost. If a map
-/// that is not compressed is cut into disjoint parts, mergeMaps() restores its finest scale exactly. The coarse scales
-/// can differ.
+/// moment match of its remaining children if some are lost, and is deleted if all are lost.
+///
+/// The disjoint parts of a map can be merged again with mergeMaps(). The finest scale is then exactly that of the map,
+/// unless the map was compressed. The coarse scales can differ.
 template <int D>
 GAUSSMAP_API GaussianMap<D> crop(const GaussianMap<D>& map, const std::function<bool(const Vector<D>&)>& isInside);
 

@@ -26,15 +26,15 @@ struct MergeMapsOptions {
 /// starts from the Gaussians of the next finer scale. The number of clusters that are left is fixed for all these cells
 /// together: it is the sum of max(p, q) over the cells. Every cluster is the exact moment match of its children.
 ///
-/// The method of the paper differs in three points. It fixes the number of clusters per cell, it starts from the
-/// clusters at every scale, and it ends with a run of KLKMeans. Both methods were measured by merging two halves of a
-/// drive. The error is the 95 % quantile of the distances from samples of the result to the points; it is compared with
-/// the error of a map of all points. With the method of the paper, the error is 9 % larger at scale 1 and 22 % larger
-/// at scale 2. With this function, it is 1 % smaller at scale 1 and 1 % larger at scale 2.
+/// The method of the paper differs from this function in three points. The paper fixes the number of clusters per cell,
+/// starts from the clusters at every scale, and ends with a run of KLKMeans. Both methods were measured by merging two
+/// halves of a drive. The error is the 95 % quantile of the distances from samples of the result to the points; it is
+/// compared with the error of a map of all points. With the method of the paper, the error is 9 % larger at scale 1 and
+/// 22 % larger at scale 2. With this function, it is 1 % smaller at scale 1 and 1 % larger at scale 2.
 ///
 /// Occupancy: In a finest cell that both maps have, the log-odds are added and limited to +-kMaxOccupancy. If only one
-/// map has occupancy, its log-odds are used. Cells that only the other map has then get kMaxOccupancy. The log-odds of
-/// a coarse cluster are the maximum over its children.
+/// map has occupancy, its log-odds are used, and the cells that exist only in the map without occupancy get
+/// kMaxOccupancy. The log-odds of a coarse cluster are the maximum over its children.
 ///
 /// mergeMaps(a, b) and mergeMaps(b, a) have a bit-identical finest scale.
 ///

@@ -17,15 +17,16 @@ struct SimplifyOptions {
 /// Reduces the number of Gaussians of a map to a budget, Yguel 2009 sec. 5.4.
 ///
 /// The function merges pairs of clusters of the same cell, until the budget is met. The cheapest merges of the
-/// whole scale come first. The finest scale is simplified too if its cells hold several Gaussians. The finer
-/// scales of a cell can be missing, so the function also accepts compressed maps, final maps and maps of one scale. The
-/// children of merged clusters become children of the union. Coarse clusters thus stay the moment matches of their
-/// children. Every cell keeps at least one Gaussian. A finest scale with exact moments does not change.
+/// whole scale come first. The finest scale is simplified too if its cells hold several Gaussians; cells with exact
+/// moments hold one and do not change. Compressed maps, final maps and maps of one scale are accepted. The children of
+/// merged clusters become children of the union. Coarse clusters thus stay the moment matches of their children. Every
+/// cell keeps at least one Gaussian.
 ///
-/// With MaxError, the error of a scale is the 95 % quantile of the distances from samples of the scale to the nearest
-/// samples of the leaves of the given map. Per scale, a bisection finds the smallest number of Gaussians that keeps the
-/// limit, to within 0.5 %. If a scale exceeds the limit before any merge, it does not change and is listed in
-/// RefineResult::not_reached. A scale with one Gaussian per cell is never listed. The result has no error curves.
+/// With MaxError, samples are drawn from the scale and from the leaves of the given map. The error is the 95 % quantile
+/// of the distances from a sample of the scale to the nearest sample of the leaves. Per scale, a bisection finds the
+/// smallest number of Gaussians that keeps the limit, to within 0.5 %. If a scale exceeds the limit before any merge,
+/// it does not change and is listed in RefineResult::not_reached. A scale with one Gaussian per cell is never listed.
+/// The result has no error curves.
 ///
 /// Throws std::invalid_argument in these cases:
 /// - The budget or an option is out of range; the message names it.

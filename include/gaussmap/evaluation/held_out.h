@@ -21,8 +21,8 @@ GAUSSMAP_API std::vector<double> logLikelihoods(const GaussianMap<D>& map, int s
                                                 const std::vector<Vector<D>>& points, int threads = 0);
 /// Returns logLikelihood() of many points from the leaves of the map: one value per point, in their order.
 ///
-/// The function looks at the cell of a point and the adjacent cells, at every scale. The Gaussians of those cells that
-/// are leaf cells contribute. The weights are divided by the weight of the whole map. `threads`: 0 = all cores. Throws
+/// The function looks at the cell of a point and the adjacent cells, at every scale. Of these cells, only leaf cells
+/// contribute their Gaussians. The weights are divided by the weight of the whole map. `threads`: 0 = all cores. Throws
 /// like logLikelihoods() of one scale.
 template <int D>
 GAUSSMAP_API std::vector<double> logLikelihoods(const GaussianMap<D>& map, const std::vector<Vector<D>>& points,

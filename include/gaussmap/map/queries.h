@@ -79,8 +79,8 @@ GAUSSMAP_API std::optional<NearestGaussian<D>> nearest(const GaussianMap<D>& map
 /// Returns the unit normal of the surface at a point, or std::nullopt if no scale has a suitable Gaussian there.
 ///
 /// The function looks at the point's cell of one scale after the other, finest first. In the cell it takes the cluster
-/// nearest to the point, with the distance of Yguel 2009 eq. (2). This cluster gives the normal if it spans a surface.
-/// It then has at least D + 1 points, and its standard deviation along every axis except the normal is at least 4
+/// nearest to the point, with the distance of Yguel 2009 eq. (2). This cluster gives the normal if it spans a surface:
+/// if it has at least D + 1 points, and if its standard deviation along every axis except the normal is at least 4
 /// MapOptions::noise. The sign of the normal is arbitrary. Throws std::out_of_range if the point is not finite or out
 /// of the grid's range.
 template <int D>

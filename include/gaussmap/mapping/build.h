@@ -29,7 +29,7 @@ struct AccumulateProgress {
   std::size_t scans_done = 0;  ///< number of scans read so far
   std::size_t scans = 0;       ///< number of all scans
   std::int64_t points = 0;     ///< number of points read so far
-  std::size_t cells = 0;       ///< lower bound of the number of occupied cells: those of a single thread
+  std::size_t cells = 0;       ///< lower bound of the number of occupied cells: the cells that one thread has found
 };
 /// A function that receives the progress.
 using ReportProgress = std::function<void(const AccumulateProgress&)>;

@@ -42,12 +42,12 @@ struct GaussianMapFilterOptions {
 /// - With FilterOutput::Samples, output points are unchanged input points.
 /// - An output point without a normal gets the normal and curvature of the input's surface (see pointNormals()). This
 ///   normal points towards sensor_origin_. All other normals are scaled to unit length, also for FilterOutput::Samples.
-///   This applies to point types with these fields.
+///   Point types without fields for a normal and a curvature have neither.
 ///
 /// As with pcl::VoxelGrid, the output is not organised and has only finite points. setIndices() selects input points.
-/// getRemovedIndices(), if enabled in the constructor, returns the non-finite input points and those that are not
-/// nearest to the mean of their Gaussian. Without an input cloud, the filter prints an error and does not change the
-/// output. If an option is out of range, it prints an error and returns an empty cloud.
+/// getRemovedIndices(), if enabled in the constructor, returns the input points that are not kept. Each Gaussian keeps
+/// the input point that is nearest to its mean. Without an input cloud, the filter prints an error and does not change
+/// the output. If an option is out of range, it prints an error and returns an empty cloud.
 template <typename PointT>
 class GAUSSMAP_API GaussianMapFilter : public pcl::Filter<PointT> {
  public:
@@ -63,8 +63,9 @@ class GAUSSMAP_API GaussianMapFilter : public pcl::Filter<PointT> {
 
   /// Sets the maximum number of points kept.
   void setBudget(std::size_t points) { options_.budget = points; }
-  /// Sets the maximum distance of 95 % of the input from their output points [m]; 0: as many points as the budget
-  /// allows. If the budget is too small for this distance, the budget decides, and error() is larger than the distance.
+  /// Sets a distance [m]: 95 % of the input points must be at most this far from their output points. With 0, the
+  /// filter keeps as many points as the budget allows. If the budget is too small for this distance, the budget
+  /// decides, and error() is larger than the distance.
   void setMaxError(double metres) { options_.max_error = metres; }
   /// Selects means or samples.
   void setOutput(FilterOutput output) { options_.output = output; }

@@ -21,9 +21,9 @@ namespace gaussmap {
 
 /// Builds a map of segments from PCL clouds with SegmentFitter. Each cloud is one sweep of a planar laser.
 ///
-/// Call setInputCloud(), setIndices() to select some points, and fit() for each cloud, then map(). The points are in
-/// the sensor frame, and the pose of the sensor is in sensor_origin_ and sensor_orientation_, as after PCL's readers.
-/// Any point type with x, y, z can be used.
+/// For each cloud, call setInputCloud() and fit(); setIndices() before fit() selects points. At the end, call map().
+/// The points are in the sensor frame, and the pose of the sensor is in sensor_origin_ and sensor_orientation_, as
+/// after PCL's readers. Any point type with x, y, z can be used.
 template <typename PointT>
 class GAUSSMAP_API PointCloudSegmentFitter : public pcl::PCLBase<PointT> {
  public:

@@ -13,8 +13,9 @@ namespace gaussmap {
 
 /// Options of registerScan() and registerMap().
 struct RegistrationOptions {
-  /// The Gaussians of cells with this side represent the scan [m], > 0. 0: the side of the map's finest cells. At
-  /// scales of the map with wider cells, the cells of the scan are four times as wide. The last step never uses these.
+  /// The Gaussians of cells with this side represent the scan [m], > 0. 0: the side of the map's finest cells. The
+  /// first steps use coarse scales of the map. If the cells of such a scale are wider than `resolution`, the scan is
+  /// represented with cells of four times `resolution`. The last step always uses cells of `resolution`.
   double resolution = 0.0;
   /// Maximum number of Gaussians of the scan that a step uses, >= 1. If there are more, the step uses an even
   /// selection of them.
@@ -22,7 +23,7 @@ struct RegistrationOptions {
   int max_iterations = 30;  ///< maximum number of iterations per step, >= 1
   double kernel = 3.0;      ///< the robust kernel halves the cost of a residual of this many standard deviations, > 0
   /// The last step ends when an iteration moves the pose by less than this [m], > 0, and turns it by less than
-  /// `rotation`. For earlier steps, both limits can be larger, in the same ratio.
+  /// `rotation`. Earlier steps can use larger limits: both are multiplied by the same factor.
   double translation = 5e-4;
   double rotation = 5e-5;    ///< limit of the turn, see `translation` [rad], > 0
   double degenerate = 0.01;  ///< a pose is degenerate if smallest / largest information is at most this, >= 0
@@ -61,9 +62,9 @@ GAUSSMAP_API RegistrationResult registerScan(const std::vector<Eigen::Vector3d>&
                                              const Pose& guess = {}, const RegistrationOptions& options = {});
 
 /// Registers the map `source` to `map`, distribution to distribution. It works like registerScan(), with the Gaussians
-/// of `source` instead of those of a scan. These are from the scale of `source` whose cells are closest in side to
-/// those of the scan. If `source` is empty, the result is the guess. The resulting pose transforms the frame of
-/// `source` into that of `map`.
+/// of `source` instead of those of a scan. Where registerScan() would build cells of some side, the scale of `source`
+/// with the most similar side is used. If `source` is empty, the result is the guess. The resulting pose transforms the
+/// frame of `source` into that of `map`.
 GAUSSMAP_API RegistrationResult registerMap(const GaussianMap<3>& source, const GaussianMap<3>& map,
                                             const Pose& guess = {}, const RegistrationOptions& options = {});
 

@@ -16,7 +16,7 @@ namespace gaussmap {
 struct GAUSSMAP_API Segment {
   Vector<2> start{0.0, 0.0};     ///< first end point [m]
   Vector<2> end{0.0, 0.0};       ///< second end point [m]
-  double normal_variance = 0.0;  ///< sigma_n^2, variance of the evidence across the line [m^2], eq. (2)
+  double normal_variance = 0.0;  ///< sigma_n^2, variance of the evidence at right angles to the line [m^2], eq. (2)
   /// Covariance of two errors of the line: its offset along the normal at the middle of the segment [m], and its angle
   /// [rad]. Symmetric positive definite.
   Matrix<2> covariance = Matrix<2>::Zero();

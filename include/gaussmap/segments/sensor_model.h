@@ -25,13 +25,14 @@ struct ObservationPoint {
 };
 
 /// Computes where a beam can have ended. h of Leal 2000 eq. (1) is the end of a beam, computed from its range, its
-/// bearing and the pose. The model applies h to possible values of these, without linearising h.
+/// bearing and the pose. The model applies h to possible ranges, bearings and poses, and does not
+/// linearise h.
 class GAUSSMAP_API ObservationModel {
  public:
   virtual ~ObservationModel() = default;
-  /// Replaces the content of `points` by the possible ends of one beam. The beam has a return. Every beam of a scan
-  /// gets the same number of points. `number` is the number of the observation; it is different for every observation
-  /// of the map.
+  /// Replaces the content of `points` by the possible ends of one beam. The beam must have a return. Every beam of a
+  /// scan gets the same number of points. `number` is the number of the observation; it is different for every
+  /// observation of the map.
   virtual void observe(const LaserScan& scan, std::size_t beam, std::uint64_t number,
                        std::vector<ObservationPoint>& points) const = 0;
 };

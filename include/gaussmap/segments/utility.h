@@ -13,13 +13,13 @@ namespace gaussmap {
 /// Properties of a segment and its evidence. Utilities are computed from them. The paper calls them goal functions o_1,
 /// o_2, ..., Leal 2000 sec. 4.2 eq. (3).
 struct SegmentGoals {
-  double normal_variance = 0.0;  ///< o_1 = sigma_n^2 of the evidence across the line [m^2]
+  double normal_variance = 0.0;  ///< o_1 = sigma_n^2, variance of the evidence at right angles to the line [m^2]
   double length = 0.0;           ///< o_2, length of the segment [m]
   double weight = 0.0;           ///< number of observations
   /// Number of cells along the line that have evidence. A cell with n observations counts n / (n + 1).
   double cells = 0.0;
-  /// Sum over these cells [m^2]: n / (n + 1) times the mean squared distance of the cell's observations from the line
-  /// that fits the cells best.
+  /// Sum over these cells [m^2]. A cell adds n / (n + 1) times the mean squared distance between its observations and a
+  /// line. The line is the one that fits all these cells best.
   double misfit = 0.0;
   Vector<2> start{0.0, 0.0};  ///< first end point [m], map frame
   Vector<2> end{0.0, 0.0};    ///< second end point [m], map frame
@@ -83,8 +83,9 @@ struct ViewpointDependentOptions {
 /// segments that meet the field around the observer.
 ///
 /// After the observer has left, the splits near its place are undone. The text of the paper says this, but its equation
-/// does not. This class merges two segments outside the field if together they are shorter than l_min. Outside the
-/// field, such short segments are not split, so they come from a visit of the observer.
+/// does not. This class merges two segments outside the field if together they are shorter than l_min.
+/// Splits as short as this happen only inside the field. Two such segments therefore come from a time when the observer
+/// was near.
 class GAUSSMAP_API ViewpointDependentUtility : public SegmentUtility {
  public:
   /// Stores the options. Throws std::invalid_argument if an option is out of range; the message names the option.
@@ -114,8 +115,8 @@ struct DescriptionLengthOptions {
 ///
 /// The description length is the sum of two costs. Each segment costs `segment_cost`. Each cell along a segment costs
 /// the negative log-likelihood of its squared distance from the line: SegmentGoals::misfit divided by 2 sigma^2. A cell
-/// that is seen often counts at most once. Otherwise, a wall that is observed for a long time would be split because of
-/// pose errors of a few centimetres.
+/// counts n / (n + 1), so it counts at most once, however often it is seen. Otherwise, a wall that is observed for a
+/// long time would be split because of pose errors of a few centimetres.
 class GAUSSMAP_API DescriptionLengthUtility : public SegmentUtility {
  public:
   /// Stores the options. Throws std::invalid_argument if an option is out of range; the message names the option.

@@ -75,10 +75,10 @@ GAUSSMAP_API void checkProjection(const Projection& projection);
 /// if there are fewer than three returns.
 ///
 /// Points that are not returns (see isReturn()) are ignored. If the elevations form rings, each ring is a row.
-/// Otherwise all rows have the same height. It is the 90 % quantile of the differences in elevation between points one
-/// above the other, but at least the median difference in azimuth between neighbours. The width of a column is twice
-/// the median difference in azimuth between neighbours of a ring. This leaves few empty pixels on a surface. If no
-/// point lies more than 0.05 degrees above another, there is one row.
+/// Otherwise all rows have the same height: the 90 % quantile of the differences in elevation between points one above
+/// the other. The height is at least the median difference in azimuth between neighbours. The width of a column is
+/// twice the median difference in azimuth between neighbours of a ring. This leaves few empty pixels on a surface. If
+/// no point lies more than 0.05 degrees above another, there is one row.
 GAUSSMAP_API std::optional<SphericalProjection> findSphericalProjection(const std::vector<Eigen::Vector3d>& points);
 
 /// Determines the camera of an organised cloud by least squares. Returns std::nullopt if the RMS distance between the

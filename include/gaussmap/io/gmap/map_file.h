@@ -101,7 +101,7 @@ GAUSSMAP_API MapFileSize mapFileSize(const std::filesystem::path& path);
 
 /// Name of the metadata entry with the history: a JSON array with one object per step, in the order of the steps.
 inline constexpr const char* kHistoryEntry = "history";
-/// Name of the metadata entry with the error curves, as JSON. n is a number of Gaussians, m stands for a distance [m]:
+/// Name of the metadata entry with the error curves, as JSON. n is a number of Gaussians, m is a distance [m]:
 /// `[{"scale": s, "points": [{"gaussians": n, "q99": m, "q95": m, "mean": m}, ...]}, ...]`.
 inline constexpr const char* kCurvesEntry = "error_curves";
 

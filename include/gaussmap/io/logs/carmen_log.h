@@ -33,10 +33,10 @@ struct CarmenLog {
 ///                 m remissions[m] x y heading ...
 ///
 /// FLASER does not give the bearings. They follow from n as in CARMEN, for a SICK laser with a field of view of 180
-/// degrees (100 degrees for 400 or 401 beams). The first beam points to the right, half the field of view from straight
-/// ahead. The step is the field of view divided by n for 180, 360 and 400 beams, and divided by n - 1 for other
-/// numbers. Without a return, a SICK writes a range of about 81.8 m. LaserScan::max_range is therefore 80 m for such
-/// lasers.
+/// degrees (100 degrees for 400 or 401 beams). The first beam points to the right: its bearing is minus
+/// half of the field of view. The step is the field of view divided by n for 180, 360 and 400 beams, and divided by n -
+/// 1 for other numbers. Without a return, a SICK writes a range of about 81.8 m. LaserScan::max_range is therefore 80 m
+/// for such lasers.
 ///
 /// Damaged lines are skipped and listed in CarmenLog::faults. If a gzip file is truncated or damaged, all whole lines
 /// before the damage are kept. Throws FileError if the file cannot be read or holds no usable scan.
