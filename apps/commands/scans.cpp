@@ -224,9 +224,10 @@ void run(const ScansCommand& command) {
     print(found, table, command.each);
   if (!found.without_pose.empty() && !command.input.skip_without_pose) {
     std::fflush(stdout);
-    throw std::runtime_error(command.input.poses + ": " + std::to_string(found.without_pose.size()) +
-                             " of the scans have no pose, so pcd2map would stop; use --skip-without-pose to leave them "
-                             "out");
+    const std::size_t missing = found.without_pose.size(), all = found.scans.size() + missing;
+    throw std::runtime_error(command.input.poses + ": " + std::to_string(missing) + " of " + std::to_string(all) +
+                             (missing == 1 ? " scans has" : " scans have") +
+                             " no pose, so pcd2map would stop; use --skip-without-pose to leave such scans out");
   }
 }
 

@@ -210,8 +210,11 @@ std::optional<TimeUnit> pairTimes(const std::vector<ColumnName>& names, PoseLayo
   for (std::size_t i = 0; i < names.size(); ++i)
     if (layout.columns[i] == PoseColumn::Time) times.push_back(i);
   if (times.empty()) return std::nullopt;
+  const bool is_euroc = std::any_of(names.begin(), names.end(),
+                                    [](const ColumnName& name) { return name.joined.compare(0, 4, "prsr") == 0; });
   const auto unitOfColumn = [&](std::size_t i) {
     if (names[i].joined == "utime") return std::optional(TimeUnit::Microseconds);
+    if (is_euroc) return std::optional(TimeUnit::Nanoseconds);
     return timeUnitOf(names[i].unit.empty() ? names[i].joined : names[i].unit);
   };
   if (times.size() == 2 && unitOfColumn(times[0]) == TimeUnit::Seconds &&

@@ -98,7 +98,7 @@ PoseFile readAutomatic(const PoseText& text) {
   }
   const InferredLayout inferred = inferLayout(text, 0);
   PoseFile file = readTable(text, inferred.layout, 0, inferred.format);
-  file.indices_may_be_ids = inferred.index_behind;
+  file.indices_may_be_ids = file.indices_may_be_ids || inferred.index_behind;
   return file;
 }
 

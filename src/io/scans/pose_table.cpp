@@ -105,11 +105,13 @@ class TableReader {
     file.by_name = layout_.has(PoseColumn::Name) || named_;
     const bool has_time = layout_.has(PoseColumn::Time) || layout_.has(PoseColumn::Seconds);
     if ((!has_key && !has_time) || (has_key && named_)) return;
-    if (has_key && std::all_of(keys_.begin(), keys_.end(), [](const std::optional<Decimal>& key) {
+    const bool has_index = layout_.has(PoseColumn::Index);
+    if (!has_index && std::all_of(keys_.begin(), keys_.end(), [](const std::optional<Decimal>& key) {
           return key && key->whole && key->digits < kMaxKeyIndex;
         })) {
       for (std::size_t i = 0; i < keys_.size(); ++i) file.entries[i].index = keys_[i]->digits;
-      return;
+      if (has_key) return;
+      file.indices_may_be_ids = true;  // a header calls them times, but they can be the numbers of scans
     }
     double largest = 0.0;
     for (const std::optional<Decimal>& key : keys_)

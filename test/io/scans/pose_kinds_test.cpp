@@ -58,8 +58,8 @@ TEST(PoseKinds, SeparatesByBlanksTabsCommasAndSemicolons) {
 }
 
 TEST(PoseKinds, ReadsMatricesInOneLine) {
-  for (const std::string& key : {"", "7 ", "7.5 ", "1700000000500000000 ", "7 1700000000.5 "}) {
-    for (const std::string& row : {"", " 0 0 0 1"}) {
+  for (const std::string key : {"", "7 ", "7.5 ", "1700000000500000000 ", "7 1700000000.5 "}) {
+    for (const std::string row : {"", " 0 0 0 1"}) {
       const PoseFile file = parse(key + kMatrix + row + "\n");
       expectQuarterTurn(file);
       EXPECT_EQ(file.format, row.empty() ? PoseFormat::Kitti : PoseFormat::Matrix4);
@@ -161,7 +161,7 @@ TEST(PoseKinds, RefusesWhatIsNotClear) {
   expectRefused("time,x,y,z,roll,pitch,yaw\n0.5,4,5,6,1,2,3\n", {"unit", "xyzrpy-rad"});
   expectRefused("time,a,b,c\n0.5,4,5,6\n", {"line 1", "no columns x, y and z", "--pose-format"});
   expectRefused("0.5 4 5 6 0.70711 0 0 0.70711 9 9 9\n", {"11 numbers", "--pose-format"});
-  expectRefused("1 2 3 1 0 0 0 1 0\n", {" or ", "--pose-format"});  // an id behind, or two keys in front
+  expectRefused("1 2.5 3 1 0 0 0 1 0\n", {" or ", "--pose-format"});  // an id behind, or two keys in front
   expectRefused("time,x,x,y,z,qx,qy,qz,qw\n0.5,4,4,5,6,0,0,0,1\n", {"columns 2 and 3"});
   expectRefused("time x y z qx qy qz qw\n", {"only a header"});
 }

@@ -122,6 +122,14 @@ TEST(PoseMatching, TakesIdsBehindThePoseForIndicesOnlyIfAllScansHaveOne) {
   EXPECT_EQ(linesFor(file, {"0.pcd", "1.pcd", "2.pcd"}, PoseMatch::Order), (Lines{1, 2, 3}));
 }
 
+TEST(PoseMatching, TakesWholeTimesForNumbersOfScansOnlyIfAllScansHaveOne) {
+  const TemporaryDirectory directory;
+  const PoseFile file =
+      readPoseFile(directory.write("poses.txt", "# time x y z qx qy qz qw\n4 1 0 0 0 0 0 1\n7 2 0 0 0 0 0 1\n"));
+  EXPECT_EQ(linesFor(file, {"7.pcd"}, PoseMatch::Index), (Lines{2}));
+  EXPECT_EQ(linesFor(file, {"1.pcd", "2.pcd"}, PoseMatch::Order), (Lines{1, 2}));
+}
+
 TEST(PoseMatching, TakesTheOrderOnlyWithoutCommonKeysAndWithEqualCounts) {
   EXPECT_EQ(linesFor(fileOf({"0.5", "1.5"}), {"b.pcd", "a.pcd"}, PoseMatch::Order), (Lines{1, 2}));
   EXPECT_EQ(linesFor(kittiFile(2), {"1700000000.5.pcd", "1700000001.5.pcd"}, PoseMatch::Order), (Lines{1, 2}));

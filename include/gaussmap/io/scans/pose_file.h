@@ -43,7 +43,8 @@ struct PoseFile {
   std::string layout;                         ///< for messages: "time x y z qx qy qz qw"
   std::vector<Entry> entries;                 ///< in the order of the file
   bool by_name = false;                       ///< true: the keys are names of scans
-  bool indices_may_be_ids = false;            ///< true: the indices stand behind the pose, like the ids of RTAB-Map
+  /// true: the indices may not be numbers of scans: they stand behind the pose (ids of RTAB-Map), or are called times.
+  bool indices_may_be_ids = false;
 };
 
 /// Reads a pose file.
