@@ -21,6 +21,7 @@ void addScanOptions(Command& command, ScanInput& input) {
   command.choice("--frame", input.frame, {"sensor", "map"}, "frame of the points in the files");
   command.number("--max-range", input.max_range, 0.0, 1e9,
                  "drop points farther from the sensor than this [m]; 0 = no limit");
+  addPoseMeaning(command, input.meaning);
   command.files({"--poses"});
 }
 
@@ -28,7 +29,7 @@ PcdScans openScans(const ScanInput& input) {
   FoundScans found = findScans({input.paths.begin(), input.paths.end()}, input.poses,
                                input.frame == "map" ? ScanFrame::Map : ScanFrame::Sensor);
   for (const std::string& warning : found.warnings) warn(warning);
-  return std::move(found.scans);
+  return withMeaning(std::move(found.scans), input.meaning);
 }
 
 AccumulateOptions accumulateOptions(const ScanInput& input, double resolution, int threads) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "commands/pose_meaning.h"
 #include "common/command.h"
 #include "gaussmap/io/scans/pcd_scans.h"
 #include "gaussmap/mapping/build.h"
@@ -16,13 +17,14 @@ struct ScanInput {
   std::string poses;
   std::string frame = "sensor";
   double max_range = 0.0;  // 0: no limit
+  PoseMeaning meaning;
 };
 /// Adds the positional argument of the paths.
 void addScanPaths(Command& command, ScanInput& input);
-/// Adds --poses, --frame and --max-range.
+/// Adds --poses, --frame, --max-range, --pose-convention and --no-pose-check.
 void addScanOptions(Command& command, ScanInput& input);
 
-/// Calls findScans() and prints its warnings on stderr.
+/// Calls findScans() and prints its warnings on stderr. Throws like withMeaning().
 PcdScans openScans(const ScanInput& input);
 AccumulateOptions accumulateOptions(const ScanInput& input, double resolution, int threads);
 /// Returns all points of the scans [m, map frame]. Throws std::runtime_error if no point is usable.

@@ -17,11 +17,24 @@ namespace gaussmap::detail {
 namespace {
 
 constexpr std::size_t kConventions = kPoseConventions.size();
-constexpr double kFinest = 1.0 / 16.0;        // side of the finest cells, as a part of the radius of a scan
-constexpr double kSlack = 0.1;                // distance from a surface that counts as on it, as a part of the side
-constexpr double kClearOffset = 3.0;          // two places differ, in units of that distance
-constexpr double kSameDirection = 0.906;      // cosine of 25 degrees
-constexpr double kOtherDirection = 0.766;     // cosine of 40 degrees
+constexpr std::size_t kNoMotion = std::size_t(PoseConvention::NoMotion);
+constexpr double kFinest = 1.0 / 16.0;  // side of the finest cells, as a part of the radius of a scan
+constexpr double kSlack = 0.1;          // distance from a surface that counts as on it, as a part of the side
+constexpr double kClearOffset = 3.0;    // two places differ, in units of that distance
+// A piece counts if the offset along its normal is at least this part of the whole offset. Without this limit, the
+// errors of odometry would decide about the floor, whose distance from the sensor never changes.
+constexpr double kClearPart = 0.25;
+constexpr double kBody = 0.6;              // range in which a sensor can see its carrier, as a part of the radius
+constexpr double kSameDirection = 0.906;   // cosine of 25 degrees
+constexpr double kOtherDirection = 0.766;  // cosine of 40 degrees
+
+constexpr std::size_t indexOf(PoseConvention convention) {
+  return std::size_t(convention);  // the order of kPoseConventions
+}
+
+bool samePose(const Pose& a, const Pose& b) {
+  return a.translation == b.translation && a.rotation.coeffs() == b.rotation.coeffs();
+}
 
 using Duels = std::array<std::array<ConventionDuel, kConventions>, kConventions>;
 
@@ -57,7 +70,8 @@ std::vector<Eigen::Vector3d> sampleOf(const Scans& scans, std::size_t index, std
 
 /// Returns the number of pairs to compare: more pairs if the scans have few points, which is cheap then.
 std::size_t pairsFor(std::size_t points, const PoseCheckOptions& options) {
-  return std::max(options.pairs, std::min(3 * options.pairs, options.points_per_scan / std::max<std::size_t>(points, 1)));
+  return std::max(options.pairs,
+                  std::min(3 * options.pairs, options.points_per_scan / std::max<std::size_t>(points, 1)));
 }
 
 double sideOf(const Surface& surface, const ScanSurfaces& scan) {
@@ -74,8 +88,8 @@ bool liesOn(const Surface& piece, double side, const Pose& motion, const Eigen::
        ++level) {
     const Surface* const surface = target.at(mean, level);
     if (surface == nullptr) continue;
-    const double limit = kSlack * std::max(side, sideOf(*surface, target)) +
-                         2.0 * std::hypot(piece.thickness, surface->thickness);
+    const double limit =
+        kSlack * std::max(side, sideOf(*surface, target)) + 2.0 * std::hypot(piece.thickness, surface->thickness);
     const Eigen::Vector3d offset = mean - surface->mean;
     const Eigen::Vector3d direction =
         target.planar() ? Eigen::Vector3d(surface->normal.cross(surface->across)) : surface->normal;
@@ -89,7 +103,7 @@ bool liesOn(const Surface& piece, double side, const Pose& motion, const Eigen::
 /// Returns true if two motions put the piece at clearly different places: not onto the same plane.
 bool tells(const Surface& piece, double side, const Pose& a, const Pose& b) {
   const Eigen::Vector3d offset = a * piece.mean - b * piece.mean;
-  const double limit = kClearOffset * (kSlack * side + 2.0 * piece.thickness);
+  const double limit = std::max(kClearOffset * (kSlack * side + 2.0 * piece.thickness), kClearPart * offset.norm());
   const Eigen::Vector3d normal_a = a.rotation * piece.normal, normal_b = b.rotation * piece.normal;
   if (std::abs(normal_a.dot(normal_b)) < kOtherDirection) return true;
   if (std::min(std::abs(offset.dot(normal_a)), std::abs(offset.dot(normal_b))) > limit) return true;
@@ -117,12 +131,15 @@ void addDuels(const ScanSurfaces& source, const ScanSurfaces& target, const std:
     const double side = sideOf(piece, source);
     std::array<bool, kConventions> fits;
     for (std::size_t c = 0; c < kConventions; ++c) fits[c] = liesOn(piece, side, motions[c], rotations[c], target);
+    // The body of the robot moves with the sensor.
+    const bool carried = piece.mean.norm() < kBody * source.finest() / kFinest;
     // The slices of a planar laser that moves out of its plane look alike, but show different places.
     const bool slices = source.planar() && !staysInPlane(piece, side, motions[given]);
     for (std::size_t a = 0; a < kConventions; ++a)
       for (std::size_t b = a + 1; b < kConventions; ++b) {
         if (!tells(piece, side, motions[a], motions[b])) continue;
-        if (slices && kPoseConventions[b] == PoseConvention::NoMotion && a == given) continue;
+        if (carried && (a == kNoMotion || b == kNoMotion)) continue;
+        if (slices && ((a == given && b == kNoMotion) || (b == given && a == kNoMotion))) continue;
         for (const auto& [first, other] : {std::pair(a, b), std::pair(b, a)})
           duels[first][other] += {1, std::size_t(fits[first] && !fits[other]), std::size_t(fits[other] && !fits[first]),
                                   std::size_t(fits[first] && fits[other])};
@@ -133,7 +150,7 @@ void addDuels(const ScanSurfaces& source, const ScanSurfaces& target, const std:
 /// Returns true if another convention wins with a clear margin. `pairs`: pairs of scans that tell the two apart.
 bool winsClearly(const ConventionDuel& duel, std::size_t pairs) {
   const double share = duel.pieces > 0 ? double(duel.other_only) / double(duel.pieces) : 0.0;
-  return share >= (pairs > 1 ? 0.08 : 0.1) && duel.other_only >= 3 * duel.first_only + 8;
+  return share >= (pairs > 1 ? 0.05 : 0.08) && duel.other_only >= 3 * duel.first_only + 8;
 }
 
 std::optional<std::size_t> betterThan(std::size_t given, const std::vector<Duels>& per_pair, const Duels& sum) {
@@ -171,10 +188,12 @@ ConventionDuel& ConventionDuel::operator+=(const ConventionDuel& more) {
 
 PoseCheck checkPoses(const Scans& scans, const PoseCheckOptions& options) {
   PoseCheck result;
-  result.given = scans.frame() == ScanFrame::Map ? PoseConvention::NoMotion : PoseConvention::SensorToMap;
+  result.given = scans.frame() == ScanFrame::Map ? PoseConvention::NoMotion : options.convention;
   if (scans.size() < 2) return result;
   std::vector<Pose> poses;
   for (std::size_t i = 0; i < scans.size(); ++i) poses.push_back(scans.info(i).pose);
+  if (std::all_of(poses.begin(), poses.end(), [&](const Pose& pose) { return samePose(pose, poses.front()); }))
+    return result;
 
   const std::size_t middle = scans.size() / 2;
   std::map<std::size_t, std::vector<Eigen::Vector3d>> samples;
@@ -184,14 +203,13 @@ PoseCheck checkPoses(const Scans& scans, const PoseCheckOptions& options) {
   extent.centre = medianOf(samples[middle]);
   extent.radius = medianDistance(samples[middle], extent.centre);
   const auto pairs = tellingPairs(poses, result.given, extent, pairsFor(samples[middle].size(), options));
-  if (getenv("PCDBG")) { fprintf(stderr,"R %g planar %d\n", extent.radius, 0); for (auto& p : pairs) fprintf(stderr," %zu-%zu %g m", p.first,p.second,(poses[p.first].translation-poses[p.second].translation).norm()); fprintf(stderr,"\n"); }
   if (pairs.empty()) return result;
 
   std::vector<std::size_t> used;
   for (const auto& [to, from] : pairs) used.insert(used.end(), {to, from});
   std::sort(used.begin(), used.end());
   used.erase(std::unique(used.begin(), used.end()), used.end());
-  std::vector<ScanSurfaces> surfaces(scans.size() > 0 ? used.size() : 0);
+  std::vector<ScanSurfaces> surfaces(used.size());
   parallelFor(used.size(), options.threads, 1, [&](std::size_t i) {
     const auto known = samples.find(used[i]);
     const std::vector<Eigen::Vector3d> points =
@@ -199,8 +217,7 @@ PoseCheck checkPoses(const Scans& scans, const PoseCheckOptions& options) {
     if (!points.empty()) surfaces[i] = {points, kFinest * extent.radius, liesInPlane(points, extent.radius)};
   });
 
-  const auto given = std::size_t(std::find(kPoseConventions.begin(), kPoseConventions.end(), result.given) -
-                                 kPoseConventions.begin());
+  const std::size_t given = indexOf(result.given);
   std::vector<Duels> per_pair(pairs.size());
   parallelFor(pairs.size(), options.threads, 1, [&](std::size_t i) {
     const auto [to, from] = pairs[i];

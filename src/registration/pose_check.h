@@ -12,9 +12,10 @@
 namespace gaussmap::detail {
 
 struct PoseCheckOptions {
-  std::size_t pairs = 4;                ///< most pairs of scans that are compared
-  std::size_t points_per_scan = 8192;   ///< most points of a scan that are used
-  int threads = 0;                      ///< 0 = all cores
+  PoseConvention convention = PoseConvention::SensorToMap;  ///< of the poses, as the program assumes
+  std::size_t pairs = 4;               ///< pairs of scans to compare; more if the scans have few points
+  std::size_t points_per_scan = 8192;  ///< most points of a scan that are used
+  int threads = 0;                     ///< 0 = all cores
 };
 
 /// How two conventions compare: counts the flat pieces of scans for which they predict different places.

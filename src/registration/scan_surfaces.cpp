@@ -53,8 +53,8 @@ ScanSurfaces::ScanSurfaces(const std::vector<Eigen::Vector3d>& points, double fi
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d cell = (points[i] - corner_) / finest;
     if ((cell.array() >= 0.0).all() && (cell.array() < kSideLimit).all())
-      items.push_back({mortonCode(std::uint64_t(cell.x()), std::uint64_t(cell.y()), std::uint64_t(cell.z())),
-                       std::uint32_t(i)});
+      items.push_back(
+          {mortonCode(std::uint64_t(cell.x()), std::uint64_t(cell.y()), std::uint64_t(cell.z())), std::uint32_t(i)});
   }
   sortByCode(items.data(), items.size(), spare);
 

@@ -13,12 +13,12 @@ namespace gaussmap::detail {
 
 /// A flat piece of a scan: the points of one cell.
 struct Surface {
-  Eigen::Vector3d mean;     ///< [m], frame of the points
-  Eigen::Vector3d normal;   ///< of unit length
-  Eigen::Vector3d across;   ///< planar lasers: the other direction in which the piece is thin; otherwise zero
-  double thickness = 0.0;   ///< standard deviation along the normal [m]
-  int level = 0;            ///< of the cell: its side is finest * 2^level
-  bool covered = false;     ///< true: finer pieces represent its points
+  Eigen::Vector3d mean;    ///< [m], frame of the points
+  Eigen::Vector3d normal;  ///< of unit length
+  Eigen::Vector3d across;  ///< planar lasers: the other direction in which the piece is thin; otherwise zero
+  double thickness = 0.0;  ///< standard deviation along the normal [m]
+  int level = 0;           ///< of the cell: its side is finest * 2^level
+  bool covered = false;    ///< true: finer pieces represent its points
 };
 
 /// The flat pieces of a scan, in cells of several sizes. This is a small picture of a scan to compare others with.

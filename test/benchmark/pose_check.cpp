@@ -42,8 +42,8 @@ struct Sequence {
 struct Mistake {
   const char* name;
   PoseConvention convention;
-  ScanFrame frame;         ///< what the program is told
-  bool points_in_map;      ///< what the files hold
+  ScanFrame frame;     ///< what the program is told
+  bool points_in_map;  ///< what the files hold
 };
 constexpr std::array<Mistake, 7> kMistakes = {{
     {"points in map frame", PoseConvention::NoMotion, ScanFrame::Sensor, true},
@@ -155,13 +155,13 @@ std::vector<Sequence> realSequences(const std::filesystem::path& data) {
 }
 
 /// Returns the largest separation, as a part of the radius, between the right and the wrong motions of two scans of the
-/// run that are at most one radius apart.
+/// run that are neighbours or at most one radius apart.
 double effectOf(const Sequence& sequence, std::size_t first, std::size_t count, const Mistake& mistake) {
   double most = 0.0;
   for (std::size_t i = first; i < first + count; ++i)
     for (std::size_t j = i + 1; j < first + count; ++j) {
       const Pose &to = sequence.scans[i].pose, &from = sequence.scans[j].pose;
-      if ((to.translation - from.translation).norm() > sequence.extent.radius) continue;
+      if (j > i + 1 && (to.translation - from.translation).norm() > sequence.extent.radius) continue;
       const Pose right = motionBetween(PoseConvention::SensorToMap, to, from);
       Pose wrong;
       if (mistake.points_in_map)
