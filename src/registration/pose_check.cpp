@@ -150,7 +150,9 @@ void addDuels(const ScanSurfaces& source, const ScanSurfaces& target, const std:
 /// Returns true if another convention wins with a clear margin. `pairs`: pairs of scans that tell the two apart.
 bool winsClearly(const ConventionDuel& duel, std::size_t pairs) {
   const double share = duel.pieces > 0 ? double(duel.other_only) / double(duel.pieces) : 0.0;
-  return share >= (pairs > 1 ? 0.05 : 0.08) && duel.other_only >= 3 * duel.first_only + 8;
+  // Few pieces that fit could fit by chance, so they must be nearly all.
+  const std::size_t margin = share >= 0.1 ? 3 : 8;
+  return share >= (pairs > 1 ? 0.05 : 0.08) && duel.other_only >= margin * duel.first_only + 8;
 }
 
 std::optional<std::size_t> betterThan(std::size_t given, const std::vector<Duels>& per_pair, const Duels& sum) {
@@ -214,7 +216,7 @@ PoseCheck checkPoses(const Scans& scans, const PoseCheckOptions& options) {
     const auto known = samples.find(used[i]);
     const std::vector<Eigen::Vector3d> points =
         known != samples.end() ? known->second : sampleOf(scans, used[i], options.points_per_scan);
-    if (!points.empty()) surfaces[i] = {points, kFinest * extent.radius, liesInPlane(points, extent.radius)};
+    if (!points.empty()) surfaces[i] = {points, kFinest * extent.radius, planeOf(points, extent.radius)};
   });
 
   const std::size_t given = indexOf(result.given);

@@ -7,7 +7,7 @@ namespace {
 /// Returns the motion that turns lidar axes (x forward, y left, z up) into those of a camera (x right, y down,
 /// z forward).
 Pose lidarToCamera() {
-  return {Eigen::Vector3d::Zero(), Pose::Rotation(0.5, -0.5, 0.5, -0.5)};
+  return {Eigen::Vector3d::Zero(), Pose::Rotation(0.5, 0.5, -0.5, 0.5)};
 }
 
 }  // namespace

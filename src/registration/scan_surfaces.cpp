@@ -2,6 +2,7 @@
 #include "registration/scan_surfaces.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -23,7 +24,7 @@ struct CellSums {
 };
 
 /// Returns the piece of a cell with these points, or nullopt if they are too few or not flat.
-std::optional<Surface> surfaceOf(const CellSums& cell, double side, bool planar) {
+std::optional<Surface> surfaceOf(const CellSums& cell, double side, const std::optional<Eigen::Vector3d>& plane) {
   if (cell.count < kFewestPoints) return std::nullopt;
   const double n = cell.count;
   Surface surface;
@@ -32,19 +33,20 @@ std::optional<Surface> surfaceOf(const CellSums& cell, double side, bool planar)
   eigen.computeDirect(cell.squares / n - surface.mean * surface.mean.transpose());
   const Eigen::Vector3d spread = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();  // in ascending order
   // The spread of a full square is 0.29 of its side. A line of points (one ring of a lidar) has no normal.
-  const int thin = planar ? 1 : 0;
+  const int thin = plane ? 1 : 0;
   if (spread(thin) > 0.1 * side || spread(thin + 1) < 0.1 * side || spread(thin) > 0.4 * spread(thin + 1))
     return std::nullopt;
-  surface.normal = eigen.eigenvectors().col(thin);
-  surface.across = planar ? Eigen::Vector3d(eigen.eigenvectors().col(0)) : Eigen::Vector3d::Zero();
+  surface.across = plane.value_or(Eigen::Vector3d::Zero());
+  surface.normal = plane ? plane->cross(eigen.eigenvectors().col(2)).normalized() : eigen.eigenvectors().col(0);
   surface.thickness = spread(thin);
   return surface;
 }
 
 }  // namespace
 
-ScanSurfaces::ScanSurfaces(const std::vector<Eigen::Vector3d>& points, double finest, bool planar)
-    : finest_(finest), planar_(planar) {
+ScanSurfaces::ScanSurfaces(const std::vector<Eigen::Vector3d>& points, double finest,
+                           const std::optional<Eigen::Vector3d>& plane)
+    : finest_(finest), planar_(plane.has_value()) {
   if (points.empty()) return;
   // The points lie around the middle of the cells of the coarsest level, so that a plane through the centre is not cut.
   corner_ = medianOf(points) - Eigen::Vector3d::Constant((kSideLimit / 2 + 0.37) * finest);
@@ -62,7 +64,7 @@ ScanSurfaces::ScanSurfaces(const std::vector<Eigen::Vector3d>& points, double fi
   std::array<CellSums, kLevels> open;
   std::array<std::size_t, kLevels> first{};  // index of the first piece inside the open cell of a level
   const auto close = [&](int level, std::uint64_t code) {
-    if (std::optional<Surface> surface = surfaceOf(open[std::size_t(level)], finest * double(1 << level), planar)) {
+    if (std::optional<Surface> surface = surfaceOf(open[std::size_t(level)], finest * double(1 << level), plane)) {
       surface->mean += middle;
       surface->level = level;
       surface->covered = surfaces_.size() > first[std::size_t(level)];
@@ -115,7 +117,7 @@ double medianDistance(const std::vector<Eigen::Vector3d>& points, const Eigen::V
   return nthSmallest(values, values.size() / 2);
 }
 
-bool liesInPlane(const std::vector<Eigen::Vector3d>& points, double extent) {
+std::optional<Eigen::Vector3d> planeOf(const std::vector<Eigen::Vector3d>& points, double extent) {
   const Eigen::Vector3d centre = medianOf(points);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
@@ -126,8 +128,9 @@ bool liesInPlane(const std::vector<Eigen::Vector3d>& points, double extent) {
   }
   const double n = double(points.size());
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
-  eigen.compute(squares / n - sum * sum.transpose() / (n * n), Eigen::EigenvaluesOnly);
-  return eigen.eigenvalues()(0) < 1e-6;
+  eigen.compute(squares / n - sum * sum.transpose() / (n * n));
+  if (!(eigen.eigenvalues()(0) < 1e-6)) return std::nullopt;
+  return eigen.eigenvectors().col(0);
 }
 
 }  // namespace gaussmap::detail

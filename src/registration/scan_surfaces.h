@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "gaussmap/version.h"
@@ -15,7 +16,7 @@ namespace gaussmap::detail {
 struct Surface {
   Eigen::Vector3d mean;    ///< [m], frame of the points
   Eigen::Vector3d normal;  ///< of unit length
-  Eigen::Vector3d across;  ///< planar lasers: the other direction in which the piece is thin; otherwise zero
+  Eigen::Vector3d across;  ///< planar lasers: the normal of their plane; otherwise zero
   double thickness = 0.0;  ///< standard deviation along the normal [m]
   int level = 0;           ///< of the cell: its side is finest * 2^level
   bool covered = false;    ///< true: finer pieces represent its points
@@ -29,9 +30,10 @@ class ScanSurfaces {
   static constexpr int kLevels = 4;
 
   ScanSurfaces() = default;
-  /// `points`: n [m], all finite. `finest`: side of the finest cells [m]. `planar`: the points lie in one plane, so a
-  /// piece is a line.
-  ScanSurfaces(const std::vector<Eigen::Vector3d>& points, double finest, bool planar);
+  /// `points`: n [m], all finite. `finest`: side of the finest cells [m]. `plane`: normal of the plane in which all
+  /// points lie, as those of a planar laser; a piece is then a line.
+  ScanSurfaces(const std::vector<Eigen::Vector3d>& points, double finest,
+               const std::optional<Eigen::Vector3d>& plane = std::nullopt);
 
   const std::vector<Surface>& surfaces() const { return surfaces_; }
   double finest() const { return finest_; }
@@ -56,7 +58,8 @@ class ScanSurfaces {
 Eigen::Vector3d medianOf(const std::vector<Eigen::Vector3d>& points);
 /// Returns the median distance of the points from `centre` [m].
 double medianDistance(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& centre);
-/// Returns true if all points lie in one plane, as those of a planar laser, up to a thousandth of `extent` [m].
-bool liesInPlane(const std::vector<Eigen::Vector3d>& points, double extent);
+/// Returns the normal of the plane in which all points lie, up to a thousandth of `extent` [m]; nullopt if there is
+/// none.
+std::optional<Eigen::Vector3d> planeOf(const std::vector<Eigen::Vector3d>& points, double extent);
 
 }  // namespace gaussmap::detail
