@@ -118,7 +118,7 @@ run hausdorff_scans -- hausdorff kitti.gmap data/kitti_6scans --scale 2 --json
 run hausdorff_mesh err.pcd -- hausdorff default.gmap street/truth.ply --samples 20000 --scale 2 --write-errors err.pcd --json
 run hausdorff_map -- hausdorff refine.gmap one.gmap --scale 1 --json
 run held_out -- hausdorff first.gmap second --held-out --json
-run hausdorff_max -- hausdorff data/sim_hall_20scans hall/truth.pcd --frame map --max-only --json
+run hausdorff_max -- hausdorff data/sim_hall_20scans hall/truth.pcd --max-only --json
 # Wrong use and bad data end in the same line.
 head -c 2000 data/kitti_6scans/000000.pcd > cut.pcd
 run wrong_cut -- pcd2map cut.pcd -o x.gmap

@@ -51,6 +51,7 @@ void addScanOptions(Command& command, ScanInput& input) {
   addRangeOptions(command, input);
   command.numbers("--crop", input.crop, 4, 6, -1e12, 1e12,
                   "use only points in this box of the map frame: x0 y0 x1 y1, or x0 y0 z0 x1 y1 z1 [m]");
+  addPoseMeaning(command, input.meaning);
 }
 
 void addRangeOptions(Command& command, ScanInput& input) {
@@ -130,6 +131,7 @@ FindScansOptions findOptions(const ScanInput& input) {
   options.poses = input.poses;
   setPoseFormat(input.pose_format, options);
   options.matching = {kPoseMatches.at(input.match_poses), input.max_time_gap, input.interpolate};
+  options.convention = input.meaning.convention;
   options.skip_without_pose = input.skip_without_pose;
   if (!input.extrinsic.empty()) options.extrinsic = extrinsicIn(input.extrinsic);
   options.frame = input.frame == "map" ? ScanFrame::Map : ScanFrame::Sensor;
@@ -140,6 +142,9 @@ PcdScans openScans(const ScanInput& input) {
   FoundScans found = findScans({input.paths.begin(), input.paths.end()}, findOptions(input));
   if (!input.poses.empty()) note(found.poses);
   for (const std::string& warning : found.warnings) warn(warning);
+  if (input.meaning.check)
+    if (const std::string fault = faultOfPoses(found, input.meaning.convention); !fault.empty())
+      throw std::runtime_error(fault);
   return std::move(found.scans);
 }
 

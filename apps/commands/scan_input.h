@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "commands/pose_meaning.h"
 #include "common/command.h"
 #include "gaussmap/io/scans/pcd_scans.h"
 #include "gaussmap/mapping/build.h"
@@ -26,19 +27,21 @@ struct ScanInput {
   double max_range = 0.0;  // 0: no limit
   double min_range = 0.0;
   std::vector<double> crop;  // x0 y0 x1 y1 or x0 y0 z0 x1 y1 z1 [m, map frame]; empty: no limit
+  PoseMeaning meaning;
 };
 /// Adds the positional argument of the paths.
 void addScanPaths(Command& command, ScanInput& input);
 /// Adds --poses and the options that say how it is read and matched.
 void addPoseOptions(Command& command, ScanInput& input);
-/// Adds the options of poses, --frame, --max-range, --min-range and --crop.
+/// Adds the options of poses, --frame, --max-range, --min-range, --crop, --pose-convention and --no-pose-check.
 void addScanOptions(Command& command, ScanInput& input);
 /// Adds --max-range and --min-range.
 void addRangeOptions(Command& command, ScanInput& input);
 
 /// Throws UsageError if an option does not make sense.
 FindScansOptions findOptions(const ScanInput& input);
-/// Calls findScans(). Prints its warnings on stderr, and, with a pose file, how the poses were found.
+/// Calls findScans(). Prints its warnings on stderr, and, with a pose file, how the poses were found. Throws
+/// like findScans(), and std::runtime_error if the check of poses finds a fault, see faultOfPoses().
 PcdScans openScans(const ScanInput& input);
 /// Prints warnings about the coordinates that were read, see PcdScans::coordinateWarnings(). Call it after reading.
 void warnOfCoordinates(const PcdScans& scans, double resolution);

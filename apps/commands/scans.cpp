@@ -2,7 +2,6 @@
 // gaussmap scans INPUT...: shows what pcd2map would read, without building a map.
 #include <algorithm>
 #include <cstdio>
-#include <limits>
 #include <map>
 #include <memory>
 #include <stdexcept>
@@ -13,6 +12,7 @@
 #include "common/json.h"
 #include "common/progress_bar.h"
 #include "common/report.h"
+#include "core/accept_points.h"
 
 namespace gaussmap::app {
 namespace {
@@ -25,6 +25,7 @@ example because a scan has no pose.)"};
 
 struct ScansCommand {
   ScanInput input;
+  double resolution = MapOptions().resolution;  // [m]
   bool each = false;
   bool json = false;
 };
@@ -45,30 +46,18 @@ void extend(std::optional<Box<3>>& box, const Eigen::Vector3d& point) {
   box->high = box->high.cwiseMax(point);
 }
 
-ScanPoints pointsOf(const PcdScans& scans, std::size_t index, double max_range) {
+ScanPoints pointsOf(const PcdScans& scans, std::size_t index, const detail::PointLimits& limits) {
   ScanPoints result;
-  const ScanInfo info = scans.info(index);
-  const bool in_map = scans.frame() == ScanFrame::Map;
+  const Pose pose = scans.info(index).pose;
   const std::unique_ptr<ScanReader> reader = scans.open(index);
   PointBlock<3> block;
-  for (std::size_t first = 0; first < reader->size(); first += block.size) {
+  for (std::size_t first = 0, step = 0; first < reader->size(); first += step) {
     reader->read(first, block);
-    if (block.size == 0) break;
-    for (std::size_t i = 0; i < block.size; ++i) {
-      const Eigen::Vector3d point(block.coordinate[0][i], block.coordinate[1][i], block.coordinate[2][i]);
-      const Eigen::Vector3d from_sensor = in_map ? Eigen::Vector3d(point - info.pose.translation) : point;
-      ++result.counts.read;
-      if (!point.allFinite()) {
-        ++result.counts.non_finite;
-      } else if (from_sensor.isZero(0.0)) {
-        ++result.counts.at_sensor;
-      } else if (from_sensor.norm() > max_range) {
-        ++result.counts.beyond_range;
-      } else {
-        ++result.counts.accepted;
-        extend(result.box, in_map ? point : Eigen::Vector3d(info.pose * point));
-      }
-    }
+    step = block.size;
+    if (step == 0) break;
+    result.counts += acceptPoints(pose, scans.frame(), limits, block);
+    for (std::size_t i = 0; i < block.size; ++i)
+      extend(result.box, {block.coordinate[0][i], block.coordinate[1][i], block.coordinate[2][i]});
   }
   reader->requireWhole();
   return result;
@@ -107,11 +96,11 @@ struct Table {
   std::vector<double> times;
 };
 
-Table tableOf(const PcdScans& scans, double max_range) {
+Table tableOf(const PcdScans& scans, const detail::PointLimits& limits) {
   Table table;
   ProgressBar bar;
   for (std::size_t i = 0; i < scans.size(); ++i) {
-    table.points.push_back(pointsOf(scans, i, max_range));
+    table.points.push_back(pointsOf(scans, i, limits));
     const ScanPoints& points = table.points.back();
     table.counts += points.counts;
     if (points.box) extend(table.box, points.box->low), extend(table.box, points.box->high);
@@ -167,7 +156,9 @@ Json jsonOf(const FoundScans& found, const Table& table) {
                  {"accepted", table.counts.accepted},
                  {"non_finite", table.counts.non_finite},
                  {"at_sensor", table.counts.at_sensor},
-                 {"beyond_range", table.counts.beyond_range}}},
+                 {"beyond_range", table.counts.beyond_range},
+                 {"too_near", table.counts.too_near},
+                 {"outside", table.counts.outside}}},
                {"poses", found.poses},
                {"without_pose", found.without_pose},
                {"warnings", found.warnings}};
@@ -191,7 +182,8 @@ void print(const FoundScans& found, const Table& table, bool each) {
   if (table.counts.accepted < table.counts.read)
     points += " (left out: " + std::to_string(table.counts.non_finite) + " not finite, " +
               std::to_string(table.counts.at_sensor) + " at range 0, " + std::to_string(table.counts.beyond_range) +
-              " too far)";
+              " too far, " + std::to_string(table.counts.too_near) + " too near, " +
+              std::to_string(table.counts.outside) + " outside the box)";
   printRow("points", points);
   printRow("fields", listed(table.fields));
   printRow("times", timesText(table.times));
@@ -210,25 +202,29 @@ void print(const FoundScans& found, const Table& table, bool each) {
   }
 }
 
+/// Prints the table. Throws std::runtime_error with the reason if pcd2map would stop.
 void run(const ScansCommand& command) {
   // Scans without a pose are listed first. Then the command fails, as pcd2map does.
   FindScansOptions options = findOptions(command.input);
   options.skip_without_pose = true;
-  const FoundScans found = findScans({command.input.paths.begin(), command.input.paths.end()}, options);
-  const double max_range =
-      command.input.max_range > 0.0 ? command.input.max_range : std::numeric_limits<double>::infinity();
-  const Table table = tableOf(found.scans, max_range);
+  FoundScans found = findScans({command.input.paths.begin(), command.input.paths.end()}, options);
+  const Table table = tableOf(found.scans, detail::limitsOf(accumulateOptions(command.input, command.resolution, 1)));
+  for (const std::string& warning : found.scans.coordinateWarnings(command.resolution))
+    found.warnings.push_back(warning);
+  std::string fault;
+  if (command.input.meaning.check) fault = faultOfPoses(found, command.input.meaning.convention);
+  if (!found.without_pose.empty() && !command.input.skip_without_pose) {
+    const std::size_t missing = found.without_pose.size(), all = found.scans.size() + missing;
+    fault = command.input.poses + ": " + std::to_string(missing) + " of " + std::to_string(all) +
+            (missing == 1 ? " scans has" : " scans have") +
+            " no pose, so pcd2map would stop; use --skip-without-pose to leave such scans out";
+  }
   if (command.json)
     printJson(jsonOf(found, table));
   else
     print(found, table, command.each);
-  if (!found.without_pose.empty() && !command.input.skip_without_pose) {
-    std::fflush(stdout);
-    const std::size_t missing = found.without_pose.size(), all = found.scans.size() + missing;
-    throw std::runtime_error(command.input.poses + ": " + std::to_string(missing) + " of " + std::to_string(all) +
-                             (missing == 1 ? " scans has" : " scans have") +
-                             " no pose, so pcd2map would stop; use --skip-without-pose to leave such scans out");
-  }
+  std::fflush(stdout);
+  if (!fault.empty()) throw std::runtime_error(fault);
 }
 
 }  // namespace
@@ -238,6 +234,8 @@ void addScans(CLI::App& app) {
   Command command(app, "scans", kScansHelp);
   addScanPaths(command, options->input);
   command.flag("--each", options->each, "add one line per scan: points, time and position");
+  command.number("--resolution", options->resolution,
+                 "side of the cells of the map [m], for the warning about coordinates that are too coarse");
   addScanOptions(command, options->input);
   command.json(options->json);
   command.onRun([options] { run(*options); });

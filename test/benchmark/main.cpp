@@ -28,6 +28,7 @@ int main(int argc, char** argv) try {
   addReference(app);
   addWideScans(app);
   addBoxLoad(app);
+  addPoseCheck(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

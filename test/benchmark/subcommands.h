@@ -22,5 +22,6 @@ void addFrameTimes(CLI::App& app);    // with the viewer
 void addReference(CLI::App& app);
 void addWideScans(CLI::App& app);
 void addBoxLoad(CLI::App& app);
+void addPoseCheck(CLI::App& app);
 
 }  // namespace gaussmap::benchmark

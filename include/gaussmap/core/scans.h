@@ -42,6 +42,23 @@ enum class ScanFrame {
   Map      ///< map frame: the pose gives only the position of the sensor
 };
 
+/// What a pose that was read from a file means.
+enum class PoseConvention {
+  SensorToMap,  ///< usual: the pose moves points from the sensor frame into the map frame
+  NoMotion,     ///< nothing: the points are in the map frame. ScanFrame::Map also keeps the positions of the sensors
+  Inverse,      ///< the pose moves points from the map frame into the sensor frame
+  WFirst,       ///< the quaternion was read as x y z w, but is written as w x y z
+  WLast,        ///< the quaternion was read as w x y z, but is written as x y z w
+  Camera,       ///< the pose is that of a camera (x right, y down, z forward) on a lidar (x forward, y left, z up)
+  Optical       ///< the pose is that of a body (x forward, y left, z up), but the points have the axes of a camera
+};
+
+/// Returns the pose, from the sensor frame to the map frame, of a scan whose pose was read as `read`.
+///
+/// Camera and Optical change the axes on both sides, as for the poses of KITTI odometry: the map has the axes of the
+/// points. The distance between camera and lidar is unknown and counts as zero.
+GAUSSMAP_API Pose poseAs(PoseConvention convention, const Pose& read);
+
 /// Describes a scan before its points are read.
 struct ScanInfo {
   std::string name;            ///< used in messages: the path of a file, or "scan 12"

@@ -119,14 +119,18 @@ AssignedPoses assignPoses(std::vector<ScanPose>& scans, const FindScansOptions& 
     assigned.description = "VIEWPOINT of each scan";
   else
     readPoses(scans, keys, options, assigned, extrinsic);
-  if (!extrinsic || isIdentity(extrinsic->pose)) return assigned;
-  const Pose sensor = extrinsic->pose, back = extrinsic->turns_map ? sensor.inverse() : Pose();
+  for (const ScanPose& scan : scans) assigned.as_read.push_back(scan.pose);
+  const bool moves = extrinsic && !isIdentity(extrinsic->pose);
+  if (!moves && options.convention == PoseConvention::SensorToMap) return assigned;
+  if (moves) assigned.extrinsic = extrinsic->pose;
+  const Pose& sensor = assigned.extrinsic;
+  const Pose back = moves && extrinsic->turns_map ? sensor.inverse() : Pose();
   for (std::size_t i = 0; i < scans.size(); ++i) {
     if (assigned.left_out[i]) continue;
     if (const std::string fault = poseFault(scans[i].pose); !fault.empty()) throw FileError(scans[i].path, fault);
-    const Pose moved = normalised(scans[i].pose) * sensor;
-    scans[i].pose = extrinsic->turns_map ? back * moved : moved;
+    scans[i].pose = back * (poseAs(options.convention, normalised(scans[i].pose)) * sensor);
   }
+  if (!moves) return assigned;
   assigned.description += "; extrinsic";
   if (!extrinsic->file.empty()) assigned.description += " of " + extrinsic->file.string();
   assigned.description += extrinsic->turns_map

@@ -202,8 +202,10 @@ FoundScans findScans(const std::vector<std::filesystem::path>& inputs, const Fin
   std::vector<PcdReader> kept_readers;
   std::vector<ScanPose> kept;
   std::vector<PcdScan> scans;
+  std::vector<Pose> as_read;
   for (std::size_t i = 0; i < checked.size(); ++i) {
     if (assigned.left_out[i]) continue;
+    as_read.push_back(poseFault(assigned.as_read[i]).empty() ? normalised(assigned.as_read[i]) : Pose());
     kept.push_back(checked[i]);
     scans.push_back({checked[i].path, Pose(), assigned.times[i]});
     if (i < opened.size()) kept_readers.push_back(std::move(opened[i]));
@@ -213,8 +215,12 @@ FoundScans findScans(const std::vector<std::filesystem::path>& inputs, const Fin
   if (options.frame == ScanFrame::Sensor)
     warnings.insert(warnings.end(), diagnosis.warnings.begin(), diagnosis.warnings.end());
   for (std::size_t i = 0; i < kept.size(); ++i) scans[i].pose = normalised(kept[i].pose);
-  return {PcdScans(std::move(scans), options.frame, std::move(kept_readers)), std::move(warnings),
-          std::move(assigned.description), std::move(assigned.without_pose)};
+  return {PcdScans(std::move(scans), options.frame, std::move(kept_readers)),
+          std::move(warnings),
+          std::move(assigned.description),
+          std::move(assigned.without_pose),
+          std::move(as_read),
+          assigned.extrinsic};
 }
 
 FoundScans findScans(const std::vector<std::filesystem::path>& inputs, const std::filesystem::path& poses) {

@@ -84,11 +84,12 @@ GAUSSMAP_API Extrinsic readExtrinsic(const std::filesystem::path& file);
 
 /// Options of findScans().
 struct FindScansOptions {
-  std::filesystem::path poses;                     ///< pose file; empty: the VIEWPOINT of each scan
-  PoseFormat pose_format = PoseFormat::Automatic;  ///< kind of the pose file
-  std::string pose_columns;                        ///< names of its columns, for PoseFormat::Table
-  PoseMatching matching;                           ///< how poses and scans are matched
-  bool skip_without_pose = false;                  ///< leaves out the scans without a pose; false: they are an error
+  std::filesystem::path poses;                              ///< pose file; empty: the VIEWPOINT of each scan
+  PoseFormat pose_format = PoseFormat::Automatic;           ///< kind of the pose file
+  std::string pose_columns;                                 ///< names of its columns, for PoseFormat::Table
+  PoseMatching matching;                                    ///< how poses and scans are matched
+  PoseConvention convention = PoseConvention::SensorToMap;  ///< what the poses mean
+  bool skip_without_pose = false;  ///< leaves out the scans without a pose; false: they are an error
   std::optional<Extrinsic> extrinsic =
       std::nullopt;                     ///< std::nullopt: calib.txt beside a KITTI pose file, if it exists
   ScanFrame frame = ScanFrame::Sensor;  ///< frame of the points in the files
@@ -100,6 +101,8 @@ struct FoundScans {
   std::vector<std::string> warnings;      ///< one or two sentences each, with file names and what to do
   std::string poses;                      ///< where the poses come from and how they were matched, one sentence
   std::vector<std::string> without_pose;  ///< the scans that were left out, with the reason
+  std::vector<Pose> poses_as_read;        ///< per scan: before its convention and the extrinsic were applied
+  Pose extrinsic;                         ///< that was applied: pose of the sensor in the frame of the poses
 };
 
 /// Lists the scans (see listScans()), assigns the poses, and checks them.

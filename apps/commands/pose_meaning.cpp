@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/pose_meaning.h"
+
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "commands/scan_input.h"
+#include "registration/pose_check.h"
+
+namespace gaussmap::app {
+namespace {
+
+const std::map<std::string, PoseConvention> kConventionNames = {{"sensor-to-map", PoseConvention::SensorToMap},
+                                                                {"inverse", PoseConvention::Inverse},
+                                                                {"w-first", PoseConvention::WFirst},
+                                                                {"w-last", PoseConvention::WLast},
+                                                                {"camera", PoseConvention::Camera},
+                                                                {"optical", PoseConvention::Optical}};
+
+/// Returns what is wrong with the poses if `better` is right: "if the poses are inverse (map to sensor)".
+std::string conditionOf(PoseConvention better) {
+  switch (better) {
+    case PoseConvention::SensorToMap:
+      return "if the poses move points from the sensor frame into the map frame";
+    case PoseConvention::NoMotion:
+      return "if the points are already in the map frame";
+    case PoseConvention::Inverse:
+      return "if the poses are inverse (map frame to sensor frame)";
+    case PoseConvention::WFirst:
+      return "if the quaternions are written with w first (qw qx qy qz)";
+    case PoseConvention::WLast:
+      return "if the quaternions are written with w last (qx qy qz qw)";
+    case PoseConvention::Camera:
+      return "if the poses are those of a camera (x right, y down, z forward) on a lidar";
+    case PoseConvention::Optical:
+      return "if the points have the axes of a camera (x right, y down, z forward) and the poses those of its carrier";
+  }
+  return "";
+}
+
+/// Returns what to do: "use --frame map".
+std::string adviceFor(PoseConvention better, bool in_map_frame, PoseConvention given) {
+  if (better == PoseConvention::NoMotion) return "use --frame map";
+  const std::string frame = in_map_frame ? "without --frame map" : "";
+  if (better == PoseConvention::SensorToMap)
+    return "run the command " +
+           (in_map_frame && given == PoseConvention::SensorToMap ? frame : "without --pose-convention");
+  for (const auto& [name, convention] : kConventionNames)
+    if (convention == better) return "use --pose-convention " + name + (frame.empty() ? "" : ", " + frame);
+  return "";
+}
+
+}  // namespace
+
+void addPoseMeaning(Command& command, PoseMeaning& meaning) {
+  command
+      .choiceOf("--pose-convention", meaning.convention, kConventionNames,
+                R"(what the poses mean: sensor-to-map, or inverse (map to sensor), w-first and w-last (order of the
+          quaternion, if it is not the usual one), camera (poses of a camera on a lidar, as in KITTI), optical
+          (poses of the carrier of a camera))")
+      .rare();
+  command
+      .flag("!--no-pose-check", meaning.check,
+            "do not check whether neighbouring scans fit each other better with another --pose-convention or --frame")
+      .rare();
+}
+
+std::string faultOfPoses(const FoundScans& found, PoseConvention convention) {
+  const PcdScans& scans = found.scans;
+  detail::PoseCheckOptions options;
+  options.convention = convention;
+  options.read = {found.poses_as_read, found.extrinsic};
+  detail::PoseCheck check;
+  try {
+    check = checkPoses(scans, options);
+  } catch (const FileError&) {
+    return "";  // the command reads the file again and reports it
+  }
+  if (!check.better) return "";
+  const auto of = [&](std::size_t fitting) {
+    return std::to_string(fitting) + " of " + std::to_string(check.duel.pieces);
+  };
+  return nameOf(scans) + ": neighbouring scans do not fit each other: " + of(check.duel.first_only + check.duel.both) +
+         " pieces of surface lie on the next scan, but " + std::to_string(check.duel.other_only + check.duel.both) +
+         " " + conditionOf(*check.better) + "; " +
+         adviceFor(*check.better, scans.frame() == ScanFrame::Map, convention) +
+         ", or --no-pose-check if the poses are right";
+}
+
+}  // namespace gaussmap::app
