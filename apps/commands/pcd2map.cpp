@@ -39,7 +39,7 @@ void run(const Pcd2mapOptions& options) {
   checkOnline(options.online, options.budget, options.output, inputs);
   checkMemory(options);
 
-  const PcdScans scans = openScans(options.input);
+  const PcdScans scans = openScans(options.input, options.online.on ? "--online" : nullptr);
   const AccumulateOptions reading =
       accumulateOptions(options.input, options.map.resolution, options.budget.refine.threads);
   const WrittenMap written = !options.max_memory.empty() ? buildWithinMemory(options, scans, reading)

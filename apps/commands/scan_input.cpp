@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "commands/sensor_positions.h"
 #include "common/command.h"
 #include "common/report.h"
 
@@ -24,9 +25,10 @@ void addScanOptions(Command& command, ScanInput& input) {
   command.files({"--poses"});
 }
 
-PcdScans openScans(const ScanInput& input) {
+PcdScans openScans(const ScanInput& input, const char* follows_rays) {
   FoundScans found = findScans({input.paths.begin(), input.paths.end()}, input.poses,
                                input.frame == "map" ? ScanFrame::Map : ScanFrame::Sensor);
+  if (follows_rays) requireSensorPositions(found.scans, follows_rays);
   for (const std::string& warning : found.warnings) warn(warning);
   return std::move(found.scans);
 }

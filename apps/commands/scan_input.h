@@ -22,8 +22,9 @@ void addScanPaths(Command& command, ScanInput& input);
 /// Adds --poses, --frame and --max-range.
 void addScanOptions(Command& command, ScanInput& input);
 
-/// Calls findScans() and prints its warnings on stderr.
-PcdScans openScans(const ScanInput& input);
+/// Calls findScans() and prints its warnings on stderr. For a command that follows the rays of the sensor,
+/// `follows_rays` is its name; the function then calls requireSensorPositions() before it warns.
+PcdScans openScans(const ScanInput& input, const char* follows_rays = nullptr);
 AccumulateOptions accumulateOptions(const ScanInput& input, double resolution, int threads);
 /// Returns all points of the scans [m, map frame]. Throws std::runtime_error if no point is usable.
 std::vector<Vector<3>> readPoints(const ScanInput& input, int threads);

@@ -172,12 +172,13 @@ TEST_F(CleanApp, RefusesOutputsThatWouldMeet) {
 }
 
 TEST_F(CleanApp, WritesTheGivenPoseWhereTheFileHasNone) {
+  directory_.write("lost2.pcd", postScan(1, {}));
   std::string lost = postScan(0, {});
   lost.replace(lost.find("VIEWPOINT 0 0.000000 0 1 0 0 0"), 30, "VIEWPOINT 0 0 0 0 0 0 0");
   const std::string path = directory_.write("lost.pcd", lost).string();
-  expectDataError("quaternion is zero", {"clean", path, "-o", own("c")});
-  const std::string poses = directory_.write("poses.tum", "0 7 8 9 0 0 0 1\n").string();
-  succeed({"clean", path, "--poses", poses, "-o", own("c")});
+  expectDataError("quaternion is zero", {"clean", path, own("lost2.pcd"), "-o", own("c")});
+  const std::string poses = directory_.write("poses.tum", "0 7 8 9 0 0 0 1\n1 7 8.1 9 0 0 0 1\n").string();
+  succeed({"clean", path, own("lost2.pcd"), "--poses", poses, "-o", own("c")});
   EXPECT_EQ(PcdReader(own("c/lost.pcd")).header().viewpoint.translation, Eigen::Vector3d(7, 8, 9));
 }
 

@@ -30,6 +30,7 @@ struct GAUSSMAP_API ScanEvidenceOptions {
 /// The observations of the finest cells of a map by all scans together.
 struct ScanEvidence {
   std::vector<Evidence> cells;    ///< per finest cell of the map
+  std::size_t camera_scans = 0;   ///< number of scans with a PlanarProjection
   std::size_t cells_tested = 0;   ///< cells of the coarser scales that the culling tested, summed over the scans
   std::size_t cells_visited = 0;  ///< finest cells that remained after the culling, summed over the scans
 };
@@ -38,8 +39,11 @@ struct ScanEvidence {
 struct MovingCellOptions {
   OccupancyOptions occupancy;  ///< log-odds per hit and per miss
   double min_points = 10.0;    ///< connected groups of freed cells with fewer points are noise and are kept
-  double link = 0.2;           ///< cells within this distance are connected [m], at least one cell
-  double reach = 0.5;          ///< maximum distance that an object extends beyond its freed cells [m]
+  /// The same limit if a scan is from a depth camera, at least min_points. It is a patch of 7 x 7 pixels: three
+  /// standard deviations of the lateral noise to each side, about 1 pixel each (Nguyen 2012).
+  double min_points_of_camera = 50.0;
+  double link = 0.2;   ///< cells within this distance are connected [m], at least one cell
+  double reach = 0.5;  ///< maximum distance that an object extends beyond its freed cells [m]
 };
 
 /// Separates the points of an object from those of a floor or wall in the same cell. The scans that did not see the
