@@ -5,8 +5,8 @@ namespace gaussmap::app {
 
 Option addDepthNoise(Command& command, std::vector<double>& values) {
   return command.numbers("--depth-noise", values, 2, 0.0, 1e3,
-                         R"(A B: the standard deviation of a depth z is A + B z^2 [m]. Default: "0 0" for a lidar, and
-          that of a Kinect for a depth camera, 0.0012 + 0.0019 (z - 0.4)^2)");
+                         "A B: the standard deviation of a depth z is A + B z^2 [m]; default: \"0 0\" for a lidar, "
+                         "0.0012 + 0.0019 (z - 0.4)^2 for a depth camera");
 }
 
 std::optional<DepthNoise> depthNoise(const std::vector<double>& values) {
