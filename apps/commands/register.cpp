@@ -23,9 +23,10 @@ const Help kRegisterHelp = {
     "Find the poses of scans, or of other maps, in the frame of a map",
     "gaussmap register scans/ street.gmap --tum poses.tum",
     R"(Prints the pose of every scan (x y z qx qy qz qw), its standard deviations, and its fitness: the share of the
-scan that lies on the map. The search for a scan starts at its own pose, from --poses or the VIEWPOINT of its file. With
---guess, or if nothing of the scan is on the map from there, the search starts at the pose of the scan before, moved like
-the own poses. Scans without poses (all the same, or the identity) start at the pose of the scan before.
+scan that lies on the map. The search for a scan starts at its own pose, from --poses or the VIEWPOINT of its file.
+With --guess, or if nothing of the scan lies on the map from there, the search starts at the result of the scan before,
+moved as the own poses say. Scans without own poses (all the same, or the identity) start at the result of the scan
+before.
 "degenerate" means that some direction is unobservable, for example along a corridor.
 
 A scan that is not found is named on stderr, the others are registered, and the exit code is 1.

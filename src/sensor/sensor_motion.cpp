@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kScans = 8;           // scans that are compared, evenly chosen
 constexpr std::size_t kPerDirection = 16;   // points per bin of directions, on average
-constexpr int kMostColumns = 48;             // bins of directions along the horizon
+constexpr int kMostColumns = 48;            // bins of directions along the horizon
 constexpr std::size_t kMaxPoints = 200000;  // of a scan; more do not change the result
 constexpr double kSameRange = 0.65;         // measured for a sensor that stands still: 0.88 to 1, also in traffic
 constexpr double kRangeRatio = 0.05, kRangeOffset = 0.05;  // ranges that differ by less are the same [1], [m]
