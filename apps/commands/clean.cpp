@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "commands/commands.h"
+#include "commands/depth_noise.h"
 #include "commands/scan_input.h"
 #include "common/command.h"
 #include "common/json.h"
@@ -34,6 +35,7 @@ Points that --max-range, --min-range or --crop drop are not tested, but stay in 
 struct CleanCommand {
   ScanInput input;
   MovingPointOptions options;
+  std::vector<double> depth_noise;
   std::string folder, merged, removed, labels;
   bool force = false;
   bool json = false;
@@ -179,8 +181,13 @@ void run(CleanCommand command) {
   evidence.max_range = input.max_range;
   evidence.min_range = input.min_range;
   evidence.crop = input.crop;
-  const auto files = std::make_shared<const PcdScans>(openScans(command.input));
+  evidence.visibility.noise = depthNoise(command.depth_noise);
+  const auto files = std::make_shared<const PcdScans>(openScans(command.input, "clean"));
   const PcdScans& scans = *files;
+  if (scans.size() == 1)
+    throw FileError(scans.files()[0].path,
+                    "one cloud alone shows no motion, and a cloud that was merged from scans does not say where the "
+                    "rays began; give one file per scan, at least two of the same place");
   checkScans(command, scans);
   const std::vector<std::filesystem::path> outputs = checkedOutputs(command, scans);
   ProgressBar bar;
@@ -219,6 +226,7 @@ void addClean(CLI::App& app) {
       .number("--no-return-is-free", options->options.evidence.no_return_is_free, 1e-3, 1e6,
               "treat directions without a return as free space up to this range [m]")
       .rare();
+  addDepthNoise(command, options->depth_noise);
   addScanOptions(command, options->input);
   command.threads(options->options.evidence.threads);
   command.json(options->json);

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "commands/sensor_positions.h"
 #include "common/box.h"
 #include "common/command.h"
 #include "common/report.h"
@@ -138,8 +139,9 @@ FindScansOptions findOptions(const ScanInput& input) {
   return options;
 }
 
-PcdScans openScans(const ScanInput& input) {
+PcdScans openScans(const ScanInput& input, const char* follows_rays) {
   FoundScans found = findScans({input.paths.begin(), input.paths.end()}, findOptions(input));
+  if (follows_rays) requireSensorPositions(found.scans, follows_rays);
   if (!input.poses.empty()) note(found.poses);
   for (const std::string& warning : found.warnings) warn(warning);
   if (input.meaning.check)

@@ -174,7 +174,7 @@ TEST_F(CutOff, ScansAreNamed) {
   }
   directory_.write("cut.pcd", cloud("binary"));
   fs::create_directory(own("still"));
-  expectTold({"clean", own("cut.pcd"), "-o", own("still"), "--threads", "1"}, "cut.pcd",
+  expectTold({"clean", own("cut.pcd"), scene("scans"), "-o", own("still"), "--threads", "1"}, "cut.pcd",
              fs::file_size(own("cut.pcd")) - 1);
 }
 

@@ -36,7 +36,7 @@ TEST(VisibilityOf, TellsBeforeAWallFromInAndBehindIt) {
   const RangeImage planar = imageOf(sees_x, [](const Vector3d& d) { return 10.0 / d.z(); });
   for (const double sideways : {-2.0, 0.0, 0.3}) {
     const auto in = [&](const RangeImage& image, double distance) {
-      return &image == &planar ? visibilityOf(image, {0.01 * sideways, 0.02, distance})
+      return &image == &planar ? visibilityOf(image, {0.01 * sideways, 0.02, distance}, {0.3, 0.35, DepthNoise()})
                                : visibilityOf(image, {distance, sideways, 0.4});
     };
     for (const RangeImage* image : {&spherical, &planar}) {
@@ -51,6 +51,44 @@ TEST(VisibilityOf, TellsBeforeAWallFromInAndBehindIt) {
       EXPECT_VISIBILITY(in(*image, 1e6), Hidden);
     }
   }
+}
+
+TEST(VisibilityOf, CountsABeamOnlyBeyondTheNoiseOfItsDepth) {
+  // A Kinect at 8 m and 7.5 m: 0.0012 + 0.0019 * 7.6^2 = 0.1109 m and 0.0012 + 0.0019 * 7.1^2 = 0.0970 m. Three of each
+  // are 0.624 m, so a beam that ends at 8 m frees no point beyond 8 - 0.924 = 7.08 m or so (the noise is less there).
+  const PlanarProjection sees{300, 300, 20, 20, 41, 41};
+  const RangeImage image = imageOf(sees, [](const Vector3d& d) { return 8.0 / d.z(); });
+  EXPECT_VISIBILITY(visibilityOf(image, {0, 0, 7.5}), AtSurface);
+  EXPECT_VISIBILITY(visibilityOf(image, {0, 0, 7.15}), AtSurface);
+  EXPECT_VISIBILITY(visibilityOf(image, {0, 0, 7.0}), PassedThrough);
+  EXPECT_VISIBILITY(visibilityOf(image, {0, 0, 7.5}, {0.3, 0.35, DepthNoise()}), PassedThrough);
+  // A near wall: the noise is small, so the limits are nearly those of a lidar.
+  const RangeImage near = imageOf(sees, [](const Vector3d& d) { return 2.0 / d.z(); });
+  EXPECT_VISIBILITY(visibilityOf(near, {0, 0, 1.6}), PassedThrough);
+  EXPECT_VISIBILITY(visibilityOf(near, {0, 0, 1.7}), AtSurface);
+}
+
+TEST(VisibilityOf, TakesTheNoiseThatIsStatedForALidarToo) {
+  const RangeImage image = imageOf(lidar(3, -3, 3, 361), [](const Vector3d&) { return 10.0; });
+  EXPECT_VISIBILITY(visibilityOf(image, {9.5, 0, 0}), PassedThrough);
+  EXPECT_VISIBILITY(visibilityOf(image, {9.5, 0, 0}, {0.3, 0.35, DepthNoise{0.05, 0.0, 0.0}}), AtSurface);
+  EXPECT_VISIBILITY(visibilityOf(image, {9.3, 0, 0}, {0.3, 0.35, DepthNoise{0.05, 0.0, 0.0}}), PassedThrough);
+  EXPECT_VISIBILITY(visibilityOf(image, {5.0, 0, 0}, {0.3, 0.35, DepthNoise{0.0, 0.02, 0.0}}), AtSurface);
+}
+
+TEST(VisibilityOf, TestsThePixelsOfACameraThreeCentimetresBesideThePoint) {
+  // The edge of a board at z = 1 covers columns from 70 on; the wall behind it is at 3 m. A point on the edge that
+  // projects 12 pixels beside it, by a pose error of 2 cm, is not free: 500 pixel * 3 cm / 1 m = 15 pixels.
+  const PlanarProjection sees{500, 500, 64, 64, 129, 129};
+  const RangeImage image = imageOf(sees, [](const Vector3d& d) { return (d.x() / d.z() > 0.012 ? 1.0 : 3.0) / d.z(); });
+  EXPECT_VISIBILITY(visibilityOf(image, {-0.012, 0, 1.0}), AtSurface);
+  EXPECT_VISIBILITY(visibilityOf(image, {-0.06, 0, 1.0}), PassedThrough);
+}
+
+TEST(DepthNoiseAt, GrowsWithTheSquareOfTheDepthBeyondItsStart) {
+  EXPECT_DOUBLE_EQ(DepthNoise::camera().at(0.2), 0.0012);
+  EXPECT_NEAR(DepthNoise::camera().at(5.0), 0.0012 + 0.0019 * 4.6 * 4.6, 1e-15);
+  EXPECT_EQ(DepthNoise().at(100.0), 0.0);
 }
 
 TEST(VisibilityOf, KeepsToTheToleranceToTheLastBit) {

@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "commands/depth_noise.h"
 #include "common/command.h"
 
 namespace gaussmap::app {
@@ -30,6 +31,7 @@ void addOnlineOptions(Command& command, OnlineInput& input) {
                           "number of earlier range images that new cells are tested against"),
            command.number("--no-return-is-free", options.no_return_is_free, 1e-3, 1e6,
                           "treat directions without a return as free space up to this range [m]"),
+           addDepthNoise(command, input.depth_noise),
            command.list("--max-ranges", options.max_ranges, 1e-3, 1e9,
                         "do not test cells farther than this [m]: one range per scale, finest first"),
            command.flag("--keep", input.keep, "do not delete clusters"),
@@ -64,6 +66,7 @@ OnlineOptions onlineOptions(const OnlineInput& input, const MapOptions& map, con
   options.max_range = reading.max_range;
   options.min_range = reading.min_range;
   options.crop = reading.crop;
+  options.visibility.noise = depthNoise(input.depth_noise);
   options.threads = budget.refine.threads;
   options.budget = budget.budget;
   options.method = budget.method == "insert" ? RefineMethod::Insert : RefineMethod::Agglomerate;

@@ -15,9 +15,10 @@ namespace gaussmap::app {
 struct OnlineInput {
   bool on = false;
   OnlineOptions options;
-  bool keep = false;    // delete nothing
-  std::string stats;    // CSV file
-  std::string removed;  // PCD file
+  std::vector<double> depth_noise;  // empty: that of the kind of sensor
+  bool keep = false;                // delete nothing
+  std::string stats;                // CSV file
+  std::string removed;              // PCD file
 };
 void addOnlineOptions(Command& command, OnlineInput& input);
 

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 
 #include "gaussmap/sensor/range_image.h"
 #include "gaussmap/version.h"
@@ -19,6 +20,23 @@ enum class Visibility {
   PassedThrough  ///< all beams around the point ended clearly behind it
 };
 
+/// The standard deviation of a measured depth [m]: constant + growth * (depth - start)^2. Closer than `start` it is
+/// `constant`. The depth is the range for a lidar and the coordinate z for a depth camera.
+struct GAUSSMAP_API DepthNoise {
+  double constant = 0.0;  ///< [m], >= 0
+  double growth = 0.0;    ///< [1/m], >= 0
+  double start = 0.0;     ///< [m], >= 0
+
+  /// Returns the standard deviation at a depth [m].
+  double at(double depth) const {
+    const double beyond = std::max(0.0, depth - start);
+    return constant + growth * beyond * beyond;
+  }
+  /// Returns the noise of a structured-light camera of the kind of the Kinect: 0.0012 + 0.0019 (z - 0.4)^2, Nguyen,
+  /// Izadi and Lovell 2012, eq. (3).
+  static DepthNoise camera() { return {0.0012, 0.0019, 0.4}; }
+};
+
 /// Decides when beams pass through a point. The limits are in metres, so they do not depend on the resolution of a map.
 struct VisibilityOptions {
   /// The ranges of all beams around the point must exceed the range of the point by more than this [m], >= 0.
@@ -26,10 +44,16 @@ struct VisibilityOptions {
   /// The point must be at least this far from the surface on which the beams end [m], >= 0. This is needed at grazing
   /// angles: a beam can end metres behind a point, although both lie on the same road.
   double clearance = 0.35;
+  /// Noise of the sensor, which widens both limits: by three standard deviations of the depth at the point and three at
+  /// the end of the beam. They are added, because the errors of calibration and pose are systematic. std::nullopt: none
+  /// for a SphericalProjection, because both limits include the noise of a lidar; DepthNoise::camera() for a
+  /// PlanarProjection.
+  std::optional<DepthNoise> noise = std::nullopt;
 };
 
 /// Returns the visibility of a point [m, sensor frame] from the 3 x 3 pixels around it (1 x 3 in an image of one row).
 ///
+/// For a camera, these pixels are at least 3 cm apart at the depth of the point, because poses are not exact.
 /// At least half of these pixels must have returns. A single pixel is not enough at thin objects and edges: its beam
 /// can pass beside them, and they would seem to be free.
 GAUSSMAP_API Visibility visibilityOf(const RangeImage& image, const Eigen::Vector3d& point,

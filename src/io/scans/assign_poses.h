@@ -21,8 +21,8 @@ struct AssignedPoses {
   Pose extrinsic;                            ///< that was applied
 };
 
-/// Replaces the poses of the scans by those of the pose file, and applies their convention and the extrinsic. Throws FileError if a scan has
-/// no pose and such scans are not to be left out.
-AssignedPoses assignPoses(std::vector<ScanPose>& scans, const FindScansOptions& options);
+/// Replaces the poses of the scans by those of the pose file, and applies their convention and the extrinsic. Throws
+/// FileError if a scan has no pose and such scans are not to be left out.
+GAUSSMAP_API AssignedPoses assignPoses(std::vector<ScanPose>& scans, const FindScansOptions& options);
 
 }  // namespace gaussmap::detail

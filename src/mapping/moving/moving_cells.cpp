@@ -42,6 +42,8 @@ void checkOptions(const MovingCellOptions& options, double resolution) {
   require(options.occupancy.hit > 0.0, "hit", options.occupancy.hit, "must be positive");
   require(options.occupancy.miss > 0.0, "miss", options.occupancy.miss, "must be positive");
   require(options.min_points >= 0.0, "min_points", options.min_points, "must not be negative");
+  require(options.min_points_of_camera >= 0.0, "min_points_of_camera", options.min_points_of_camera,
+          "must not be negative");
   require(options.link >= 0.0 && options.link <= kMaxCells * resolution, "link", options.link,
           "must be 0 to 1000 cells");
   require(options.reach >= 0.0, "reach", options.reach, "must not be negative");

@@ -103,7 +103,9 @@ MovingPoints::MovingPoints(std::shared_ptr<const Scans> scans, const MovingPoint
   state.counts = accumulated.counts;
   state.map = build<3>(accumulated.moments, grid);
   state.evidence = gatherEvidence(state.map, *state.scans, input, report(MovingPointStep::Looking));
-  state.moving = findMovingCells(state.map, state.evidence.cells, options.cells);
+  MovingCellOptions cells = options.cells;
+  if (state.evidence.camera_scans > 0) cells.min_points = std::max(cells.min_points, cells.min_points_of_camera);
+  state.moving = findMovingCells(state.map, state.evidence.cells, cells);
   state.shared = findSharedCells(state.map, state.moving, state.evidence.cells);
   fitSurfaces(state.map, state.stillPoints(report(MovingPointStep::Sharing)), options.shared, input.threads,
               state.shared);

@@ -19,6 +19,7 @@ namespace {
 struct OneScan {
   std::vector<std::size_t> hits, misses;  // finest cells
   VisitCounts counts;
+  bool is_camera = false;
 };
 
 std::vector<std::size_t> cellsOf(const Scan& scan, const GaussianMap<3>& map, const PointLimits& limits) {
@@ -43,6 +44,7 @@ OneScan lookAround(const GaussianMap<3>& map, const std::vector<Eigen::Vector3d>
   const std::optional<Projection> projection =
       options.projection ? options.projection : findProjection(scan.points, scan.columns);
   if (!projection) return result;
+  result.is_camera = std::holds_alternative<PlanarProjection>(*projection);
   RangeImage image(*projection, scan.points);
   if (options.no_return_is_free) image.noReturnIsFree(*options.no_return_is_free);
   const Culling culling(image, options.visibility);
@@ -66,6 +68,12 @@ void checkOptions(const ScanEvidenceOptions& options) {
   checkLimits(limitsOf(options));
   require(options.visibility.tolerance >= 0.0, "tolerance", options.visibility.tolerance, "must not be negative");
   require(options.visibility.clearance >= 0.0, "clearance", options.visibility.clearance, "must not be negative");
+  if (options.visibility.noise) {
+    const DepthNoise& noise = *options.visibility.noise;
+    require(noise.constant >= 0.0, "noise.constant", noise.constant, "must not be negative");
+    require(noise.growth >= 0.0, "noise.growth", noise.growth, "must not be negative");
+    require(noise.start >= 0.0, "noise.start", noise.start, "must not be negative");
+  }
   if (options.projection) checkProjection(*options.projection);
   if (options.no_return_is_free) {
     const double range = *options.no_return_is_free;
@@ -99,6 +107,7 @@ ScanEvidence gatherEvidence(const GaussianMap<3>& map, const Scans& scans, const
         hit = std::lower_bound(hit, scan.hits.end(), cell);
         if (hit == scan.hits.end() || *hit != cell) evidence.cells[cell].miss();
       }
+      evidence.camera_scans += scan.is_camera;
       evidence.cells_tested += scan.counts.tested;
       evidence.cells_visited += scan.counts.visited;
     }

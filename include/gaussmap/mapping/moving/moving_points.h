@@ -35,6 +35,7 @@ struct GAUSSMAP_API ScanEvidenceOptions {
 /// The finest cells below a coarse cell are skipped if no beam can pass through it (culling).
 struct ScanEvidence {
   std::vector<Evidence> cells;    ///< one entry per finest cell of the map
+  std::size_t camera_scans = 0;   ///< number of scans with a PlanarProjection
   std::size_t cells_tested = 0;   ///< number of tests of coarse cells, over all scans
   std::size_t cells_visited = 0;  ///< number of tests of finest cells, over all scans
 };
@@ -43,8 +44,11 @@ struct ScanEvidence {
 struct MovingCellOptions {
   OccupancyOptions occupancy;  ///< log-odds per hit and per miss
   double min_points = 10.0;    ///< connected freed cells with fewer points together are noise and not moving
-  double link = 0.2;           ///< cells up to this far apart are connected [m]; adjacent cells always are
-  double reach = 0.5;          ///< maximum distance that an object extends beyond its freed cells [m]
+  /// The same limit if a scan is from a depth camera, at least min_points. It is a patch of 7 x 7 pixels: three
+  /// standard deviations of the lateral noise to each side, about 1 pixel each (Nguyen 2012).
+  double min_points_of_camera = 50.0;
+  double link = 0.2;   ///< cells up to this far apart are connected [m]; adjacent cells always are
+  double reach = 0.5;  ///< maximum distance that an object extends beyond its freed cells [m]
 };
 
 /// Separates the points of an object from those of a floor or wall in the same cell. The scans before and after the

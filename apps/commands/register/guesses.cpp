@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/register/guesses.h"
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+
+#include "common/command.h"
+#include "gaussmap/io/pcd/map_pcd.h"
+#include "gaussmap/io/pcd/pcd_reader.h"
+#include "io/files/text.h"
+
+namespace gaussmap::app {
+namespace {
+
+bool samePlace(const Pose& a, const Pose& b) {
+  return a.translation == b.translation && a.rotation.coeffs() == b.rotation.coeffs();
+}
+
+/// Returns the usable VIEWPOINTs. A map in place of a scan has none: it starts at its present place.
+std::vector<std::optional<Pose>> viewpointsOf(const std::vector<std::filesystem::path>& scans, bool guessed) {
+  std::vector<std::optional<Pose>> poses(scans.size());
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    if (isMap(scans[i])) {
+      poses[i] = Pose();
+      continue;
+    }
+    const Pose viewpoint = PcdReader(scans[i]).header().viewpoint;
+    const std::string fault = poseFault(viewpoint);
+    if (fault.empty()) poses[i] = normalised(viewpoint);
+    if (i == 0 && !guessed && !fault.empty())
+      throw FileError(scans[i], "its VIEWPOINT cannot be the first guess: " + fault + "; use --guess");
+  }
+  return poses;
+}
+
+/// Forgets poses that nobody set: the identity of several scans, or one pose of all scans. The first scan keeps the
+/// latter, because the search has to start somewhere.
+void dropUnset(std::vector<std::optional<Pose>>& poses, const std::vector<std::filesystem::path>& scans) {
+  if (poses.size() < 2) return;
+  std::size_t at_identity = 0;
+  bool all_same = true;
+  for (const std::optional<Pose>& pose : poses) {
+    at_identity += pose && samePlace(*pose, Pose());
+    all_same = all_same && pose && poses[0] && samePlace(*pose, *poses[0]);
+  }
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    if (!isMap(scans[i]) && poses[i] &&
+        ((all_same && i > 0) || (!all_same && at_identity > 1 && samePlace(*poses[i], Pose()))))
+      poses[i].reset();
+}
+
+/// Returns the last number in a name: 1689000000.5 in "1689000000.500", 7 in "scan07".
+std::optional<double> lastNumber(const std::string& name) {
+  const auto isDigit = [&](std::size_t i) { return std::isdigit(static_cast<unsigned char>(name[i])) != 0; };
+  std::size_t last = name.size();
+  while (last > 0 && !isDigit(last - 1)) --last;
+  std::size_t first = last;
+  bool has_point = false;
+  while (first > 0) {
+    if (!isDigit(first - 1)) {
+      const bool is_point = name[first - 1] == '.' && !has_point && first > 1 && isDigit(first - 2);
+      if (!is_point) break;
+      has_point = true;
+    }
+    --first;
+  }
+  double number = 0.0;
+  if (first == last || !detail::parseNumber(std::string_view(name).substr(first, last - first), number))
+    return std::nullopt;
+  return number;
+}
+
+}  // namespace
+
+RegisterGuesses::RegisterGuesses(const std::vector<std::filesystem::path>& scans, const FindScansOptions& options,
+                                 const std::vector<double>& guess)
+    : scans_(scans) {
+  if (!guess.empty()) {
+    const Pose given = {{guess[0], guess[1], guess[2]}, Pose::Rotation(guess[6], guess[3], guess[4], guess[5])};
+    if (const std::string fault = poseFault(given); !fault.empty()) throw UsageError("--guess: " + fault);
+    guess_ = normalised(given);
+    own_first_ = false;
+  }
+  own_.resize(scans.size());
+  if (options.poses.empty()) {
+    own_ = viewpointsOf(scans, guess_.has_value());
+    dropUnset(own_, scans);
+  }
+  std::vector<detail::ScanPose> poses;
+  for (std::size_t i = 0; i < scans.size(); ++i) poses.push_back({scans[i], own_[i].value_or(Pose())});
+  assigned_ = assignPoses(poses, options);
+  for (std::size_t i = 0; i < scans.size(); ++i)
+    if (own_[i] || (!options.poses.empty() && !assigned_.left_out[i])) own_[i] = poses[i].pose;
+}
+
+std::vector<double> RegisterGuesses::times() const {
+  std::vector<double> times;
+  for (std::size_t i = 0; i < scans_.size(); ++i)
+    if (const auto time = assigned_.times[i] ? assigned_.times[i] : lastNumber(scans_[i].stem().string()))
+      times.push_back(*time);
+  if (std::set<double>(times.begin(), times.end()).size() == scans_.size()) return times;
+  times.clear();
+  for (std::size_t i = 0; i < scans_.size(); ++i) times.push_back(double(i));
+  return times;
+}
+
+std::vector<Pose> RegisterGuesses::of(std::size_t i) const {
+  std::vector<Pose> guesses;
+  if (own_first_ && own_[i]) guesses.push_back(*own_[i]);
+  if (last_) {
+    const bool has_motion = own_[i] && own_[*last_];
+    guesses.push_back(has_motion ? last_pose_ * own_[*last_]->inverse() * *own_[i] : last_pose_);
+  } else if (guess_) {
+    const bool has_motion = i > 0 && own_[i] && own_[0];  // the scans before were not found
+    guesses.push_back(has_motion ? *guess_ * own_[0]->inverse() * *own_[i] : *guess_);
+  }
+  if (guesses.empty()) guesses.push_back(own_[0].value_or(Pose()));
+  return guesses;
+}
+
+void RegisterGuesses::found(std::size_t i, const Pose& pose) {
+  last_ = i;
+  last_pose_ = pose;
+}
+
+}  // namespace gaussmap::app

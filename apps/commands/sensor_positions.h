@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "gaussmap/core/scans.h"
+
+namespace gaussmap::app {
+
+/// Checks scans for a command that follows the rays of the sensor. Throws std::runtime_error if all scans have the same
+/// sensor position, but their points show that the sensor moved. `command` is used in the message.
+void requireSensorPositions(const Scans& scans, const char* command);
+
+}  // namespace gaussmap::app
