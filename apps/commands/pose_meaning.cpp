@@ -20,6 +20,8 @@ const std::map<std::string, PoseConvention> kConventionNames = {{"sensor-to-map"
                                                                 {"camera", PoseConvention::Camera},
                                                                 {"optical", PoseConvention::Optical}};
 
+constexpr std::size_t kKeptBytes = 64 << 20;
+
 /// Returns what is wrong with the poses if `better` is right: "if the poses are inverse (map to sensor)".
 std::string conditionOf(PoseConvention better) {
   switch (better) {
@@ -68,17 +70,20 @@ void addPoseMeaning(Command& command, PoseMeaning& meaning) {
       .rare();
 }
 
-std::string faultOfPoses(const FoundScans& found, PoseConvention convention) {
-  const PcdScans& scans = found.scans;
+std::string faultOfPoses(FoundScans& found, PoseConvention convention) {
+  PcdScans& scans = found.scans;
   detail::PoseCheckOptions options;
   options.convention = convention;
   options.read = {found.poses_as_read, found.extrinsic};
   detail::PoseCheck check;
+  scans.keepForNextOpen(kKeptBytes);  // the command reads these scans again
   try {
     check = checkPoses(scans, options);
   } catch (const FileError&) {
+    scans.keepForNextOpen(0);
     return "";  // the command reads the file again and reports it
   }
+  scans.keepForNextOpen(0);
   if (!check.better) return "";
   const auto of = [&](std::size_t fitting) {
     return std::to_string(fitting) + " of " + std::to_string(check.duel.pieces);

@@ -20,6 +20,6 @@ void addPoseMeaning(Command& command, PoseMeaning& meaning);
 ///
 /// Returns a message with the option to use if neighbouring scans fit each other clearly better with another
 /// convention, or with points in another frame; otherwise "". `convention`: of the poses, as the program was told.
-std::string faultOfPoses(const FoundScans& found, PoseConvention convention);
+std::string faultOfPoses(FoundScans& found, PoseConvention convention);
 
 }  // namespace gaussmap::app

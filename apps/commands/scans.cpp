@@ -158,7 +158,7 @@ Json jsonOf(const FoundScans& found, const Table& table) {
                  {"at_sensor", table.counts.at_sensor},
                  {"beyond_range", table.counts.beyond_range},
                  {"too_near", table.counts.too_near},
-                 {"outside", table.counts.outside}}},
+                 {"outside_crop", table.counts.outside}}},
                {"poses", found.poses},
                {"without_pose", found.without_pose},
                {"warnings", found.warnings}};

@@ -208,7 +208,7 @@ struct PcdReader::Body {
 PcdReader::PcdReader(const std::filesystem::path& path)
     : path_(path), body_(std::make_unique<Body>(std::make_shared<const MappedFile>(path))) {
   const std::string_view bytes = body_->file->bytes();
-  body_->is_gzip = isGzip(bytes);
+  body_->is_gzip = detail::isGzip(bytes);
   if (body_->is_gzip) {
     body_->data = bytes;
     header_ = parsePcdHeader(path_, startOfGzip(path_, bytes));
@@ -233,6 +233,10 @@ PcdReader PcdReader::sameFile() const {
 PcdReader::~PcdReader() = default;
 PcdReader::PcdReader(PcdReader&&) noexcept = default;
 PcdReader& PcdReader::operator=(PcdReader&&) noexcept = default;
+
+bool PcdReader::isGzip() const {
+  return body_->is_gzip;
+}
 
 void PcdReader::requireWhole() const {
   body_->file->requireWhole();

@@ -2,6 +2,8 @@
 #include "gaussmap/io/scans/pcd_scans.h"
 
 #include <algorithm>
+#include <map>
+#include <mutex>
 #include <set>
 #include <stdexcept>
 #include <system_error>
@@ -14,6 +16,38 @@
 
 namespace gaussmap {
 using namespace detail;
+
+/// Readers that have their points in memory, until the next call of open(). Thread-safe.
+class detail::KeptReaders {
+ public:
+  using Reader = std::shared_ptr<const PcdReader>;
+
+  void allow(std::size_t bytes) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    budget_ = bytes;
+  }
+  /// Returns the reader of a scan, which is not kept any more; nullptr if there is none.
+  Reader take(std::size_t scan) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto found = readers_.find(scan);
+    if (found == readers_.end()) return nullptr;
+    Reader reader = std::move(found->second);
+    readers_.erase(found);
+    return reader;
+  }
+  void keep(std::size_t scan, const Reader& reader) {
+    const PcdHeader& header = reader->header();
+    const std::size_t bytes = std::max(3 * sizeof(double), header.record_size) * header.points;  // at most
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (bytes > budget_ || (header.encoding == PcdEncoding::Binary && !reader->isGzip())) return;
+    if (readers_.emplace(scan, reader).second) budget_ -= bytes;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::size_t budget_ = 0;
+  std::map<std::size_t, Reader> readers_;
+};
 
 namespace {
 
@@ -61,23 +95,23 @@ std::string valueName(const PcdField& field, std::size_t element) {
 
 class PcdScanReader : public ScanReader {
  public:
-  PcdScanReader(PcdReader reader, std::size_t index, std::shared_ptr<CoordinateSamples> samples)
+  PcdScanReader(std::shared_ptr<const PcdReader> reader, std::size_t index, std::shared_ptr<CoordinateSamples> samples)
       : reader_(std::move(reader)), index_(index), samples_(std::move(samples)) {}
 
-  std::size_t size() const override { return reader_.size(); }
+  std::size_t size() const override { return reader_->size(); }
   int columns() const override {
-    const PcdHeader& header = reader_.header();
+    const PcdHeader& header = reader_->header();
     return header.height > 1 ? static_cast<int>(header.width) : 0;
   }
   void read(std::size_t first, PointBlock<3>& block) const override {
-    reader_.read(first, block);
+    reader_->read(first, block);
     samples_->add(index_, first, block, size());
   }
-  void requireWhole() const override { reader_.requireWhole(); }
+  void requireWhole() const override { reader_->requireWhole(); }
 
   std::vector<std::string> valueNames() const override {
     std::vector<std::string> names;
-    for (const PcdField& field : reader_.header().fields)
+    for (const PcdField& field : reader_->header().fields)
       for (std::size_t element = 0; isValue(field) && element < field.count; ++element)
         if (const std::string name = valueName(field, element);
             std::find(names.begin(), names.end(), name) == names.end())
@@ -85,9 +119,9 @@ class PcdScanReader : public ScanReader {
     return names;
   }
   std::vector<double> values(const std::string& name) const override {
-    for (const PcdField& field : reader_.header().fields)
+    for (const PcdField& field : reader_->header().fields)
       for (std::size_t element = 0; isValue(field) && element < field.count; ++element)
-        if (valueName(field, element) == name) return reader_.column(field.name, element);
+        if (valueName(field, element) == name) return reader_->column(field.name, element);
     return ScanReader::values(name);
   }
 
@@ -96,7 +130,7 @@ class PcdScanReader : public ScanReader {
     return field.name != "x" && field.name != "y" && field.name != "z" && field.name != "_";
   }
 
-  PcdReader reader_;
+  std::shared_ptr<const PcdReader> reader_;
   std::size_t index_;
   std::shared_ptr<CoordinateSamples> samples_;
 };
@@ -127,7 +161,8 @@ PcdScans::PcdScans(std::vector<PcdScan> scans, ScanFrame frame, std::vector<PcdR
     : scans_(std::move(scans)),
       opened_(std::move(opened)),
       frame_(frame),
-      samples_(std::make_shared<CoordinateSamples>(scans_.size())) {
+      samples_(std::make_shared<CoordinateSamples>(scans_.size())),
+      kept_(std::make_shared<KeptReaders>()) {
   for (std::size_t i = opened_.size(); i < scans_.size(); ++i) {
     PcdReader reader(scans_[i].path);
     if (i < kMaxOpen) opened_.push_back(std::move(reader));
@@ -148,7 +183,16 @@ PcdReader PcdScans::reader(std::size_t index) const {
 }
 
 std::unique_ptr<ScanReader> PcdScans::open(std::size_t index) const {
-  return std::make_unique<PcdScanReader>(reader(index), index, samples_);
+  std::shared_ptr<const PcdReader> opened = kept_->take(index);
+  if (!opened) {
+    opened = std::make_shared<const PcdReader>(reader(index));
+    kept_->keep(index, opened);
+  }
+  return std::make_unique<PcdScanReader>(std::move(opened), index, samples_);
+}
+
+void PcdScans::keepForNextOpen(std::size_t bytes) {
+  kept_->allow(bytes);
 }
 
 std::vector<std::string> PcdScans::coordinateWarnings(double resolution) const {

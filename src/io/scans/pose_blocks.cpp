@@ -139,6 +139,7 @@ PoseFile readPoseGraph(const PoseText& text) {
     throw FileError(text.path, "a pose graph without VERTEX_SE3:QUAT or VERTEX_SE2" +
                                    (other.empty() ? std::string() : "; " + quote(other) + " is not supported"));
   file.layout = "vertices of a pose graph";
+  file.indices_may_be_ids = true;
   return file;
 }
 

@@ -10,7 +10,7 @@ namespace {
 // Earth-centred coordinates are below 1e7 m, so a position beyond this is not in metres.
 constexpr double kFarthest = 1e8;
 constexpr const char* kWayOut =
-    "Give each scan its pose in the VIEWPOINT of its header or with --poses FILE (TUM or KITTI), or use --frame map if "
+    "Give each scan its pose in the VIEWPOINT of its header or with --poses FILE, or use --frame map if "
     "the points are already in the map frame.";
 
 bool samePose(const Pose& a, const Pose& b) {

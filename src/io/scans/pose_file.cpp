@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gaussmap/io/scans/pose_file.h"
 
+#include <algorithm>
 #include <unordered_map>
 #include <utility>
 
@@ -60,6 +61,9 @@ PoseFile readTable(const PoseText& text, const PoseLayout& layout, std::size_t f
   PoseFile file = readPoseTable(text, layout, first);
   file.format = format;
   file.layout = layout.text();
+  const auto pose = std::find_if(layout.columns.begin(), layout.columns.end(),
+                                 [](PoseColumn column) { return column >= PoseColumn::X; });
+  if (std::find(pose, layout.columns.end(), PoseColumn::Index) != layout.columns.end()) file.indices_may_be_ids = true;
   if (layout.columns.front() == PoseColumn::Key) {  // now it is known what the key is
     const PoseFile::Entry& entry = file.entries.front();
     file.layout.replace(0, 3, file.by_name ? "name" : entry.index ? "index" : "time");

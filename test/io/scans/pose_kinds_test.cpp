@@ -127,6 +127,8 @@ TEST(PoseKinds, ReadsIndicesInFrontAndBehind) {
   expectQuarterTurn(behind);
   EXPECT_EQ(behind.entries[1].index, 13u);
   EXPECT_TRUE(behind.indices_may_be_ids);
+  EXPECT_TRUE(parse("#stamp x y z qx qy qz qw id\n0.5 " + kQuaternion + " 12\n").indices_may_be_ids);
+  EXPECT_FALSE(parse("num,t,x,y,z,qx,qy,qz,qw\n3,0.5,4,5,6,0,0,0.70711,0.70711\n").indices_may_be_ids);
   EXPECT_FALSE(parse("12.0 " + kQuaternion + "\n").entries[0].index);  // a time
 }
 

@@ -78,6 +78,8 @@ class GAUSSMAP_API PcdReader {
   const std::filesystem::path& path() const { return path_; }
   /// Returns the header of the file.
   const PcdHeader& header() const { return header_; }
+  /// Returns true if the file is compressed with gzip.
+  bool isGzip() const;
   /// Returns the number of points, including the invalid points of an organised cloud.
   std::size_t size() const { return header_.points; }
 

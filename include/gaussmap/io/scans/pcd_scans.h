@@ -17,6 +17,7 @@ namespace gaussmap {
 
 namespace detail {
 class CoordinateSamples;
+class KeptReaders;
 }
 
 /// A PCD file and the pose of its sensor.
@@ -51,6 +52,11 @@ class GAUSSMAP_API PcdScans : public Scans {
   /// Returns a reader of a file, for access to its header, records and columns. Throws like open().
   PcdReader reader(std::size_t index) const;
 
+  /// Keeps the points of ascii and compressed files that are opened from now on, until the same file is opened again,
+  /// but at most this many bytes in all. So a look at some scans before all scans are read costs little. 0: keeps no
+  /// more.
+  void keepForNextOpen(std::size_t bytes);
+
   /// Returns warnings about the coordinates of the points that were read so far: floats that are too coarse for cells
   /// of this side [m], and coordinates that look like millimetres. Call it after the scans have been read.
   std::vector<std::string> coordinateWarnings(double resolution) const;
@@ -62,6 +68,7 @@ class GAUSSMAP_API PcdScans : public Scans {
   std::vector<PcdReader> opened_;  // of the first scans: the number of memory maps per process is limited
   ScanFrame frame_;
   std::shared_ptr<detail::CoordinateSamples> samples_;  // of the points that were read
+  std::shared_ptr<detail::KeptReaders> kept_;
 };
 
 /// Returns the files of a list of inputs, in the order of the inputs.

@@ -43,7 +43,8 @@ struct PoseFile {
   std::string layout;                         ///< for messages: "time x y z qx qy qz qw"
   std::vector<Entry> entries;                 ///< in the order of the file
   bool by_name = false;                       ///< true: the keys are names of scans
-  /// true: the indices may not be numbers of scans: they stand behind the pose (ids of RTAB-Map), or are called times.
+  /// true: the indices may not be numbers of scans: they stand behind the pose (ids of RTAB-Map), are those of the
+  /// vertices of a pose graph, or are called times.
   bool indices_may_be_ids = false;
 };
 

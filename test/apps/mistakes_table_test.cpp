@@ -1,0 +1,420 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The table of mistakes in docs/scans-and-poses.md: each row is tried with the real program.
+#include <cctype>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <random>
+#include <set>
+
+#include "apps/app_fixture.h"
+#include "gaussmap/core/scans.h"
+#include "gaussmap/io/pcd/pcd_writer.h"
+
+namespace gaussmap::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Words = std::vector<std::string>;
+
+/// Six scans in a room of 9 m x 6 m x 3 m with a cupboard, from a robot that drives a curve, and what people do to
+/// them.
+class MistakesTable : public AppTest {
+ public:
+  using AppTest::own;
+  using AppTest::succeed;
+
+  /// Points on the walls, floor and ceiling of the room [m, map frame]; different points in each scan.
+  static std::vector<Vector<3>> room(unsigned scan) {
+    std::mt19937 random(scan + 11);
+    const auto uniform = [&](double low, double high) { return low + (high - low) * double(random()) / 4294967295.0; };
+    const Eigen::Vector3d low(-1, -2, -1), high(8, 4, 2);
+    std::vector<Vector<3>> points;
+    for (int i = 0; i < 3000; ++i) {
+      Vector<3> point(uniform(low.x(), high.x()), uniform(low.y(), high.y()), uniform(low.z(), high.z()));
+      const unsigned face = random() % 8;
+      if (face < 6)
+        point(int(face / 2)) = face % 2 == 0 ? low(int(face / 2)) : high(int(face / 2));
+      else
+        point =
+            face == 6 ? Vector<3>(5, uniform(2.5, 4), uniform(-1, 1)) : Vector<3>(uniform(5, 8), 2.5, uniform(-1, 1));
+      points.push_back(point);
+    }
+    return points;
+  }
+  static Pose poseOf(unsigned scan) {
+    const Eigen::AngleAxisd yaw(0.1 + 0.19 * scan, Eigen::Vector3d::UnitZ());
+    const Eigen::AngleAxisd pitch(0.04 * scan, Eigen::Vector3d::UnitY());
+    return {{0.4 + 0.7 * scan, 0.1 + 0.06 * scan * scan, 0.05 * scan}, Pose::Rotation(Eigen::Quaterniond(yaw * pitch))};
+  }
+  static std::vector<Vector<3>> seen(unsigned scan) {
+    std::vector<Vector<3>> points = room(scan);
+    for (Vector<3>& point : points) point = poseOf(scan).inverse() * Eigen::Vector3d(point);
+    return points;
+  }
+
+  /// Writes six scans with these names and poses in VIEWPOINT, and returns their folder.
+  std::string scans(
+      const std::function<Pose(unsigned)>& viewpoint = poseOf,
+      const std::function<std::string(unsigned)>& name = [](unsigned i) { return std::to_string(i); },
+      const std::function<std::vector<Vector<3>>(unsigned)>& points = seen) const {
+    fs::create_directories(own("scans"));
+    for (unsigned i = 0; i < 6; ++i)
+      writePcd(own("scans/" + name(i) + ".pcd"), points(i), PcdPrecision::Float, viewpoint(i));
+    return own("scans");
+  }
+  std::string timed() const {
+    return scans(poseOf, [](unsigned i) { return std::to_string(1700000000 + i) + ".5"; });
+  }
+  std::string inMapFrame(const std::function<Pose(unsigned)>& viewpoint = poseOf) const {
+    return scans(
+        viewpoint, [](unsigned i) { return std::to_string(i); }, room);
+  }
+
+  static std::string text(const Pose& pose) {
+    const Pose::Rotation& q = pose.rotation;
+    std::ostringstream line;
+    line.precision(12);
+    line << pose.translation.transpose() << ' ' << q.x() << ' ' << q.y() << ' ' << q.z() << ' ' << q.w();
+    return line.str();
+  }
+  std::string write(const std::string& name, const std::string& content) const {
+    std::ofstream(own(name), std::ios::binary) << content;
+    return own(name);
+  }
+  /// Writes a line per scan: `key`, and the pose.
+  std::string poses(
+      const std::function<std::string(unsigned)>& key, unsigned first = 0,
+      const std::function<std::string(unsigned)>& pose = [](unsigned i) { return text(poseOf(i)); }) const {
+    std::string lines;
+    for (unsigned i = first; i < 6; ++i) lines += key(i) + " " + pose(i) + "\n";
+    return write("poses.txt", lines);
+  }
+  static std::string number(unsigned i) { return std::to_string(i); }
+
+  Words build(const std::string& scans, const Words& more = {}) const {
+    Words words = {"pcd2map", scans, "-o", own("map.gmap"), "--budget", "1", "--force"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  Words withPoses(const std::string& scans, const std::string& poses) const { return build(scans, {"--poses", poses}); }
+  /// Builds a map of the room and returns its name.
+  std::string map(const std::string& name = "room.gmap") const {
+    if (!fs::exists(own("scans"))) scans();
+    succeed({"pcd2map", own("scans"), "-o", own(name), "--budget", "1"});
+    return own(name);
+  }
+  std::string cloud(const std::string& name, const std::vector<Vector<3>>& points, const Pose& viewpoint = {},
+                    PcdPrecision precision = PcdPrecision::Float) const {
+    writePcd(own(name), points, precision, viewpoint);
+    return own(name);
+  }
+  static std::vector<Vector<3>> moved(std::vector<Vector<3>> points, double scale, const Eigen::Vector3d& by) {
+    for (Vector<3>& point : points) point = scale * point + by;
+    return points;
+  }
+};
+
+/// A row of the table.
+struct Row {
+  const char* message;  // as in the documentation
+  std::function<Words(const MistakesTable&)> command;
+};
+
+using T = MistakesTable;
+
+const std::vector<Row>& rows() {
+  static const std::vector<Row> all = {
+      // Poses and scans
+      {"(1 s from the nearest pose, at most 500 ms)",
+       [](const T& t) {
+         return t.withPoses(t.timed(), t.poses([](unsigned i) { return std::to_string(1700000000 + i) + ".5"; }, 1));
+       }},
+      {"6 of 6 scans have no pose",
+       [](const T& t) { return t.withPoses(t.timed(), t.poses([](unsigned i) { return T::number(i) + ".25"; })); }},
+      {"the names of the scans have no times",
+       [](const T& t) { return t.withPoses(t.scans(), t.poses([](unsigned i) { return T::number(i) + ".25"; }, 1)); }},
+      {"(no index 0)", [](const T& t) { return t.withPoses(t.scans(), t.poses(T::number, 1)); }},
+      {"its name is not in the file",
+       [](const T& t) { return t.withPoses(t.scans(), t.poses([](unsigned i) { return T::number(i) + ".pcd"; }, 1)); }},
+      {"5 poses for 6 scans",
+       [](const T& t) {
+         return t.withPoses(t.scans(T::poseOf, [](unsigned i) { return std::string(1, char('a' + i)); }),
+                            t.poses(T::number, 1));
+       }},
+      {"has no pose (NaN)",
+       [](const T& t) {
+         return t.withPoses(t.scans(), t.poses(T::number, 0, [](unsigned i) {
+           return i == 2 ? std::string("nan nan nan nan nan nan nan") : T::text(T::poseOf(i));
+         }));
+       }},
+      {"have the same time but other poses",
+       [](const T& t) {
+         return t.withPoses(t.timed(), t.poses([](unsigned i) { return std::to_string(1700000000 + i / 2) + ".5"; }));
+       }},
+      {"already has a pose in line 1",
+       [](const T& t) {
+         return t.withPoses(t.scans(), t.poses([](unsigned i) { return T::number(i % 5) + ".pcd"; }));
+       }},
+      {"Use --interpolate",
+       [](const T& t) {
+         return t.withPoses(t.timed(), t.poses([](unsigned i) { return std::to_string(1700000000 + i) + ".2"; }));
+       }},
+      {"the unit of the angles is not stated",
+       [](const T& t) {
+         return t.withPoses(
+             t.scans(), t.poses(T::number, 0, [](unsigned i) { return T::number(i) + " 2 3 0 0 0." + T::number(i); }));
+       }},
+      {"the line has another layout than the lines before it",
+       [](const T& t) {
+         return t.withPoses(t.scans(), t.poses(T::number, 0, [](unsigned i) {
+           return T::text(T::poseOf(i)) + (i == 4 ? " 7 8" : "");
+         }));
+       }},
+      {"instead of 1: check the order of its numbers",
+       [](const T& t) {
+         return t.withPoses(t.scans(),
+                            t.poses(T::number, 0, [](unsigned) { return std::string("1 2 3 0.5 0.5 0.5 0.1"); }));
+       }},
+      {"the 3 x 3 part is not a rotation",
+       [](const T& t) {
+         return t.withPoses(t.scans(), t.poses([](unsigned) { return ""; }, 0,
+                                               [](unsigned) { return std::string("1 0 0 4 0 2 0 5 0 0 1 6"); }));
+       }},
+      {"the 3 x 3 part is a reflection",
+       [](const T& t) {
+         return t.withPoses(t.scans(), t.poses([](unsigned) { return ""; }, 0,
+                                               [](unsigned) { return std::string("1 0 0 4 0 -1 0 5 0 0 1 6"); }));
+       }},
+      {"all 6 scans have the same pose", [](const T& t) { return t.build(t.scans([](unsigned) { return Pose(); })); }},
+      {"scans have no pose of their own (the identity)",
+       [](const T& t) {
+         return t.build(t.scans([](unsigned i) { return i < 3 ? Pose() : T::poseOf(i); }), {"--no-pose-check"});
+       }},
+      {"Poses must be in metres",
+       [](const T& t) {
+         Pose far;
+         far.translation = {3e8, 0, 0};
+         return t.build(t.cloud("far.pcd", T::seen(0), far));
+       }},
+      {"is given more than once", [](const T& t) { return t.build(t.scans(), {t.own("scans/3.pcd")}); }},
+      {"are used as those of the sensor",
+       [](const T& t) {
+         t.write("calib.txt", "P0: 1 0 0 0 0 1 0 0 0 0 1 0\n");
+         return t.withPoses(t.scans(), t.poses([](unsigned) { return ""; }, 0,
+                                               [](unsigned i) {
+                                                 const Eigen::Matrix3d r = T::poseOf(i).rotation.toRotationMatrix();
+                                                 std::ostringstream line;
+                                                 line.precision(12);
+                                                 for (int row = 0; row < 3; ++row)
+                                                   line << r.row(row) << ' ' << T::poseOf(i).translation(row) << ' ';
+                                                 return line.str();
+                                               }));
+       }},
+      // What poses mean
+      {"if the points are already in the map frame", [](const T& t) { return t.build(t.inMapFrame()); }},
+      {"if the poses move points from the sensor frame into the map frame",
+       [](const T& t) {
+         return t.build(t.scans(), {"--frame", "map"});
+       }},
+      {"if the poses are inverse",
+       [](const T& t) { return t.build(t.scans([](unsigned i) { return T::poseOf(i).inverse(); })); }},
+      {"if the quaternions are written with w first",
+       [](const T& t) {
+         return t.withPoses(t.scans(), t.poses(T::number, 0, [](unsigned i) {
+           const Pose p = T::poseOf(i);
+           std::ostringstream line;
+           line.precision(12);
+           line << p.translation.transpose() << ' ' << p.rotation.w() << ' ' << p.rotation.x() << ' ' << p.rotation.y()
+                << ' ' << p.rotation.z();
+           return line.str();
+         }));
+       }},
+      {"if the quaternions are written with w last",
+       [](const T& t) {
+         return t.build(t.scans([](unsigned i) { return poseAs(PoseConvention::WFirst, T::poseOf(i)); }));
+       }},
+      {"if the poses are those of a camera",
+       [](const T& t) {
+         return t.build(t.scans([](unsigned i) { return poseAs(PoseConvention::Optical, T::poseOf(i)); }));
+       }},
+      {"if the points have the axes of a camera",
+       [](const T& t) {
+         return t.build(t.scans([](unsigned i) { return poseAs(PoseConvention::Camera, T::poseOf(i)); }));
+       }},
+      // Sensors
+      {"but their points show that the sensor moved",
+       [](const T& t) {
+         return Words{"clean", t.inMapFrame([](unsigned) { return Pose(); }), "--frame", "map", "-o", t.own("c")};
+       }},
+      {"one cloud alone shows no motion",
+       [](const T& t) {
+         return Words{"clean", t.cloud("merged.pcd", T::room(0)), "-o", t.own("c")};
+       }},
+      {"no usable point",
+       [](const T& t) {
+         const std::string map = t.map();
+         t.cloud("empty.pcd", {});
+         return Words{"register", t.own("scans/1.pcd"), t.own("empty.pcd"), map};
+       }},
+      {"of the scan lies on the map, so the pose may be wrong",
+       [](const T& t) {
+         const std::string map = t.map();
+         std::mt19937 random(5);
+         std::vector<Vector<3>> fog = T::seen(2);
+         fog.resize(600);
+         const auto anywhere = [&](double low, double high) {
+           return low + (high - low) * double(random()) / 4294967295.0;
+         };
+         for (int i = 0; i < 6000; ++i) fog.emplace_back(anywhere(-30, 30), anywhere(-30, 30), anywhere(-5, 20));
+         return Words{"register", t.cloud("fog.pcd", fog, T::poseOf(2)), map};
+       }},
+      {"no part of it lies on the map after the search",
+       [](const T& t) {
+         const std::string map = t.map();
+         return Words{"register", t.own("scans/1.pcd"), map, "--guess", "500", "0", "0", "0", "0", "0", "1"};
+       }},
+      // Points
+      {"the coordinates are rounded to steps of 0.5 m",
+       [](const T& t) {
+         return t.build(t.cloud("utm.pcd", T::moved(T::room(0), 1, {690000, 5330000, 500})), {"--frame", "map"});
+       }},
+      {"Are the coordinates millimetres?",
+       [](const T& t) {
+         return t.build(t.cloud("mm.pcd", T::moved(T::seen(0), 1000, {0, 0, 0})), {"--resolution", "100"});
+       }},
+      {"because floats would round them",
+       [](const T& t) {
+         const auto far = [](unsigned i) {
+           Pose pose = T::poseOf(i);
+           pose.translation += Eigen::Vector3d(690000, 5330000, 500);
+           return pose;
+         };
+         return Words{"clean", t.scans(far), "--merged", t.own("merged.pcd")};
+       }},
+      {"x y z are floats, rounded by",
+       [](const T& t) {
+         const std::string cloud =
+             t.cloud("utm.pcd", T::moved(T::room(0), 1, {690000, 5330000, 500}), {}, PcdPrecision::Double);
+         t.succeed({"pcd2map", cloud, "-o", t.own("utm.gmap"), "--budget", "1", "--frame", "map"});
+         return Words{"tiles", t.own("utm.gmap"), "-o", t.own("tiles"), "--floats"};
+       }},
+      {"the field intensity of the scans is not in the map",
+       [](const T& t) {
+         return t.build(
+             t.write("i.pcd",
+                     "VERSION 0.7\nFIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 2\nHEIGHT "
+                     "1\nPOINTS 2\nDATA ascii\n1 2 3 40\n4 5 6 50\n"));
+       }},
+      {"only the position in VIEWPOINT is used",
+       [](const T& t) {
+         return t.build(
+             t.write(
+                 "v.pcd",
+                 "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 1\nHEIGHT 1\nVIEWPOINT 0 0 0 "
+                 "0 0 0 0\nPOINTS 1\nDATA ascii\n1 2 3\n"),
+             {"--frame", "map"});
+       }},
+      {"none of the 3000 points is usable",
+       [](const T& t) {
+         return t.build(t.cloud("a.pcd", T::seen(0)), {"--min-range", "90"});
+       }},
+      // Files and options
+      {"but in its subdirectories: name them",
+       [](const T& t) {
+         fs::create_directories(t.own("dump/000000"));
+         t.cloud("dump/000000/cloud.pcd", T::seen(0));
+         return t.build(t.own("dump"));
+       }},
+      {"holds points, not Gaussians",
+       [](const T& t) {
+         fs::create_directory(t.own("tiles"));
+         t.cloud("tiles/0_0.pcd", T::room(0));
+         t.write("tiles/pointcloud_map_metadata.yaml", "x_resolution: 20.0\ny_resolution: 20.0\n0_0.pcd: [0, 0]\n");
+         return Words{"tiles", t.own("tiles"), "-o", t.own("a.gmap")};
+       }},
+      {"holds the Gaussians of a map, not the points of a scan",
+       [](const T& t) {
+         const std::string map = t.map();
+         t.succeed({"export", map, t.own("map.pcd")});
+         return t.build(t.own("map.pcd"));
+       }},
+      {"this output is a map, so its name must not end in .ply",
+       [](const T& t) {
+         return Words{"pcd2map", t.scans(), "-o", t.own("a.ply")};
+       }},
+      {"are files of a directory",
+       [](const T& t) {
+         return Words{"clean", t.scans(), "-o", t.own("a.pcd")};
+       }},
+      {"--min-range: must not be above --max-range",
+       [](const T& t) {
+         return t.build(t.scans(), {"--min-range", "5", "--max-range", "4"});
+       }},
+      {"every coordinate of the first corner must be below that of the second corner",
+       [](const T& t) {
+         return t.build(t.scans(), {"--crop", "1", "1", "1", "2"});
+       }},
+      {"do not overlap",
+       [](const T& t) {
+         const std::string map = t.map();
+         t.succeed({"pcd2map", t.cloud("far.pcd", T::moved(T::room(0), 1, {900, 0, 0})), "-o", t.own("far.gmap"),
+                    "--budget", "1"});
+         return Words{"diff", map, t.own("far.gmap")};
+       }},
+      {"no point lies near the map",
+       [](const T& t) {
+         const std::string map = t.map();
+         return Words{"pcd2map", t.cloud("far.pcd", T::moved(T::room(0), 1, {900, 0, 0})), "--update", map};
+       }},
+      {"so a scan is already in",
+       [](const T& t) {
+         const std::string map = t.map();
+         return Words{"pcd2map", t.own("scans/2.pcd"), "--update", map};
+       }},
+  };
+  return all;
+}
+
+class MistakesTableRow : public MistakesTable, public testing::WithParamInterface<std::size_t> {};
+
+TEST_P(MistakesTableRow, SaysWhatTheTableSays) {
+  const Row& row = rows()[GetParam()];
+  SCOPED_TRACE(row.message);
+  const Outcome outcome = runApp(row.command(*this));
+  EXPECT_NE(outcome.err.find(row.message), std::string::npos) << outcome.code << ": " << outcome.out << outcome.err;
+}
+
+/// "(no index 0)" as a name: "NoIndex0".
+std::string testName(const testing::TestParamInfo<std::size_t>& info) {
+  std::string name;
+  bool starts_word = true;
+  for (const char c : std::string(rows()[info.param].message)) {
+    const auto letter = static_cast<unsigned char>(c);
+    if (std::isalnum(letter)) name += starts_word ? static_cast<char>(std::toupper(letter)) : c;
+    starts_word = !std::isalnum(letter);
+  }
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(OfTheDocumentation, MistakesTableRow, testing::Range(std::size_t(0), rows().size()), testName);
+
+TEST_F(MistakesTable, HasOneTestPerRow) {
+  std::ifstream page(fs::path(GAUSSMAP_DOCS) / "scans-and-poses.md");
+  std::set<std::string> documented, tested;
+  bool in_table = false;
+  for (std::string line; std::getline(page, line);) {
+    if (line.rfind("| mistake |", 0) == 0) in_table = true;
+    if (line.empty()) in_table = false;
+    if (!in_table) continue;
+    const std::size_t end = line.rfind('`'), begin = end == std::string::npos ? end : line.rfind('`', end - 1);
+    if (begin != std::string::npos) documented.insert(line.substr(begin + 1, end - begin - 1));
+  }
+  for (const Row& row : rows()) tested.insert(row.message);
+  EXPECT_EQ(documented, tested);
+}
+
+}  // namespace
+}  // namespace gaussmap::test
