@@ -42,7 +42,8 @@ void run(const Pcd2mapOptions& options) {
   checkMemory(options);
 
   accumulateOptions(options.input, options.map.resolution, 0);  // checks the options before files are read
-  const PcdScans scans = openScans(options.input, options.online.on ? "--online" : nullptr);
+  const PcdScans scans =
+      openScans(options.input, options.budget.refine.threads, options.online.on ? "--online" : nullptr);
   noteDroppedFields(scans);
   const AccumulateOptions reading =
       accumulateOptions(options.input, options.map.resolution, options.budget.refine.threads);

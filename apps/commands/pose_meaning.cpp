@@ -70,10 +70,11 @@ void addPoseMeaning(Command& command, PoseMeaning& meaning) {
       .rare();
 }
 
-std::string faultOfPoses(FoundScans& found, PoseConvention convention) {
+std::string faultOfPoses(FoundScans& found, PoseConvention convention, int threads) {
   PcdScans& scans = found.scans;
   detail::PoseCheckOptions options;
   options.convention = convention;
+  options.threads = threads;
   options.read = {found.poses_as_read, found.extrinsic};
   detail::PoseCheck check;
   scans.keepForNextOpen(kKeptBytes);  // the command reads these scans again

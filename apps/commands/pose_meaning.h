@@ -19,7 +19,8 @@ void addPoseMeaning(Command& command, PoseMeaning& meaning);
 /// Checks what the poses of scans mean, see detail::checkPoses().
 ///
 /// Returns a message with the option to use if neighbouring scans fit each other clearly better with another
-/// convention, or with points in another frame; otherwise "". `convention`: of the poses, as the program was told.
-std::string faultOfPoses(FoundScans& found, PoseConvention convention);
+/// convention, or with points in another frame; otherwise "". `convention`: of the poses, as the program was
+/// told. `threads`: 0 = all cores.
+std::string faultOfPoses(FoundScans& found, PoseConvention convention, int threads);
 
 }  // namespace gaussmap::app

@@ -50,8 +50,10 @@ void addScanOptions(Command& command, ScanInput& input) {
   addPoseOptions(command, input);
   command.choice("--frame", input.frame, {"sensor", "map"}, "frame of the points in the files");
   addRangeOptions(command, input);
-  command.numbers("--crop", input.crop, 4, 6, -1e12, 1e12,
-                  "use only points in this box of the map frame: x0 y0 x1 y1, or x0 y0 z0 x1 y1 z1 [m]");
+  command
+      .numbers("--crop", input.crop, 4, 6, -1e12, 1e12,
+               "use only points in this box of the map frame: x0 y0 x1 y1, or x0 y0 z0 x1 y1 z1 [m]")
+      .rare();
   addPoseMeaning(command, input.meaning);
 }
 
@@ -139,13 +141,13 @@ FindScansOptions findOptions(const ScanInput& input) {
   return options;
 }
 
-PcdScans openScans(const ScanInput& input, const char* follows_rays) {
+PcdScans openScans(const ScanInput& input, int threads, const char* follows_rays) {
   FoundScans found = findScans({input.paths.begin(), input.paths.end()}, findOptions(input));
   if (follows_rays) requireSensorPositions(found.scans, follows_rays);
   if (!input.poses.empty()) note(found.poses);
   for (const std::string& warning : found.warnings) warn(warning);
   if (input.meaning.check)
-    if (const std::string fault = faultOfPoses(found, input.meaning.convention); !fault.empty())
+    if (const std::string fault = faultOfPoses(found, input.meaning.convention, threads); !fault.empty())
       throw std::runtime_error(fault);
   return std::move(found.scans);
 }
@@ -166,7 +168,7 @@ void warnOfCoordinates(const PcdScans& scans, double resolution) {
 }
 
 std::vector<Vector<3>> readPoints(const ScanInput& input, int threads, double resolution) {
-  const PcdScans scans = openScans(input);
+  const PcdScans scans = openScans(input, threads);
   std::vector<Vector<3>> points = gaussmap::readPoints(scans, accumulateOptions(input, 1.0, threads));
   warnOfCoordinates(scans, resolution);
   if (points.empty()) throw std::runtime_error(nameOf(scans) + ": no point is usable");

@@ -212,7 +212,7 @@ void run(const ScansCommand& command) {
   for (const std::string& warning : found.scans.coordinateWarnings(command.resolution))
     found.warnings.push_back(warning);
   std::string fault;
-  if (command.input.meaning.check) fault = faultOfPoses(found, command.input.meaning.convention);
+  if (command.input.meaning.check) fault = faultOfPoses(found, command.input.meaning.convention, 0);
   if (!found.without_pose.empty() && !command.input.skip_without_pose) {
     const std::size_t missing = found.without_pose.size(), all = found.scans.size() + missing;
     fault = command.input.poses + ": " + std::to_string(missing) + " of " + std::to_string(all) +

@@ -59,6 +59,13 @@ class HelpFormatter : public CLI::Formatter {
     return text;
   }
 
+  /// "4", or "4..6" if the number of values can vary.
+  static std::string countText(const CLI::Option& option) {
+    const std::string least = std::to_string(option.get_expected_min());
+    if (option.get_expected_max() == option.get_expected_min()) return least;
+    return least + ".." + std::to_string(option.get_expected_max());
+  }
+
   std::string make_option_name(const CLI::Option* option, bool is_positional) const override {
     const std::string name = CLI::Formatter::make_option_name(option, is_positional);
     return name.substr(0, name.find('{'));  // the names of flags that set false end in "{false}"
@@ -71,7 +78,7 @@ class HelpFormatter : public CLI::Formatter {
     if (option->get_expected_max() == CLI::detail::expected_max_vector_size)
       text += " ...";
     else if (option->get_expected_min() > 1)
-      text += " x " + std::to_string(option->get_expected());
+      text += " x " + countText(*option);
     return option->get_required() && option->nonpositional() ? text + " (required)" : text;
   }
 

@@ -136,7 +136,7 @@ TEST_F(Apps, TakePosesFromAFile) {
   std::vector<std::string> arguments = {"pcd2map", "-o", own("map.gmap"), "--budget", "1", "--poses", pose_file};
   arguments.insert(arguments.end(), bare.begin(), bare.end());
   EXPECT_EQ(runApp(arguments).err,
-            "gaussmap: " + pose_file + ": TUM (time x y z qx qy qz qw), 5 poses for 5 scans, matched by order\n");
+            "gaussmap: note: " + pose_file + ": TUM (time x y z qx qy qz qw), 5 poses for 5 scans, matched by order\n");
   expectSameMap<3>(load(own("map.gmap")), load(scene("map.gmap")));
 
   // Without the poses: a map, but not without a word.

@@ -28,9 +28,12 @@ class PrecisionApp : public AppTest {
 
   void writeScans(const std::string& folder, const Eigen::Vector3d& place) const {
     std::filesystem::create_directories(own(folder));
-    for (unsigned i = 0; i < 3; ++i)
-      writePcd(own(folder + "/s" + std::to_string(i) + ".pcd"), room(i), PcdPrecision::Float,
-               poseAt(place + Eigen::Vector3d(0.25 * i, 0, 0)));
+    for (unsigned i = 0; i < 3; ++i) {
+      const Eigen::Vector3d moved(0.25 * i, 0, 0);
+      std::vector<Vector<3>> points = room(i);
+      for (Vector<3>& point : points) point -= moved;
+      writePcd(own(folder + "/s" + std::to_string(i) + ".pcd"), points, PcdPrecision::Float, poseAt(place + moved));
+    }
   }
   /// Runs a command that succeeds with one line on stderr, and returns that line.
   static std::string warned(const std::vector<std::string>& arguments) {
@@ -108,14 +111,15 @@ TEST_F(PrecisionApp, CleanKeepsIntegersOf64Bits) {
       "POINTS 20\nDATA ascii\n";
   for (std::uint64_t i = 0; i < 20; ++i) text += "5 " + std::to_string(i) + " 1 " + std::to_string(stamp + i) + "\n";
   directory_.write("a.pcd", text);
-  succeed({"clean", own("a.pcd"), "-o", own("c"), "--merged", own("m.pcd")});
+  directory_.write("b.pcd", text);
+  succeed({"clean", own("a.pcd"), own("b.pcd"), "-o", own("c"), "--merged", own("m.pcd")});
   for (const std::string& path : {own("c/a.pcd"), own("m.pcd")}) {
     const PcdRecords records = readRecords(PcdReader(path));
-    ASSERT_EQ(records.size(), 20u);
-    for (std::size_t i = 0; i < 20; ++i) {
+    ASSERT_EQ(records.size(), path == own("m.pcd") ? 40u : 20u);
+    for (std::size_t i = 0; i < records.size(); ++i) {
       std::uint64_t value = 0;
       std::memcpy(&value, records.bytes.data() + i * records.record_size + records.fields[3].offset, sizeof(value));
-      EXPECT_EQ(value, stamp + i);
+      EXPECT_EQ(value, stamp + i % 20);
     }
   }
 }

@@ -130,8 +130,8 @@ TEST_F(RegisterApp, TakesTheGuessesFromAPoseFile) {
     EXPECT_NEAR(said[k]["translation"][0].get<double>(), truth(i).translation.x(), 0.03);
     EXPECT_NEAR(said[k++]["translation"][1].get<double>(), truth(i).translation.y(), 0.03);
   }
-  expectDataError("1 poses for 2 scans", {"register", scan(0), scan(1), world("map.gmap"), "--poses",
-                                          directory_.write("one.tum", "0 0 0 0 0 0 0 1\n").string()});
+  expectDataError("scan01.pcd (no index 1)", {"register", scan(0), scan(1), world("map.gmap"), "--poses",
+                                              directory_.write("one.tum", "0 0 0 0 0 0 0 1\n").string()});
 }
 
 TEST_F(RegisterApp, AppliesTheMotionOfTheOwnPosesToTheResultBeforeIfAGuessIsGiven) {

@@ -47,8 +47,7 @@ TEST_F(ScanLimitsApp, MinRangeIsAnOptionOfEveryCommandThatReadsScans) {
   EXPECT_EQ(distances["all"]["forward"]["count"], 100);
   succeed({"clean", scans, "-o", own("clean"), "--min-range", "0.5"});
   succeed({"register", scene("scans/scan00.pcd").string(), map, "--min-range", "0.5", "--max-range", "50"});
-  expectDataError("no part of it lies on the map",
-                  {"register", scene("scans/scan00.pcd").string(), map, "--min-range", "500"});
+  expectDataError("no usable point", {"register", scene("scans/scan00.pcd").string(), map, "--min-range", "500"});
 }
 
 TEST_F(ScanLimitsApp, CropUsesOnlyThePointsInABoxOfTheMapFrame) {

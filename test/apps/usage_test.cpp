@@ -12,8 +12,8 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::vector<std::string> kCommands = {
-    "pcd2map", "scans",    "refine", "compress", "register", "finish", "tiles",     "simplify", "merge", "transform", "crop",
-    "diff",    "clean",  "restore",  "info",     "export", "hausdorff", "simulate", "draw",  "segments"};
+    "pcd2map", "scans", "refine", "compress", "register", "finish", "tiles",     "simplify", "merge", "transform",
+    "crop",    "diff",  "clean",  "restore",  "info",     "export", "hausdorff", "simulate", "draw",  "segments"};
 
 TEST_F(Apps, ExplainThemselvesWithAnExample) {
   for (const std::string& command : kCommands) {

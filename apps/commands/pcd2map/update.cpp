@@ -122,7 +122,7 @@ void updateFromScans(const Pcd2mapOptions& options) {
   const double start = now();
   const MapOptions map = growingMapOptions<3>(options.update);
   const Recorded recorded = recordedIn(loadMetadata(options.update));
-  const PcdScans scans = openScans(options.input);
+  const PcdScans scans = openScans(options.input, options.budget.refine.threads);
   noteDroppedFields(scans);
   const AccumulatedScans accumulated = accumulate(options, scans, map.resolution);
 

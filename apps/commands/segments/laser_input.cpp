@@ -47,7 +47,7 @@ LaserScans readPcds(const LaserInput& input) {
     if (options.z_min > options.z_max) throw UsageError("--slice: the second height is below the first");
   }
   LaserScans all;
-  const PcdScans scans = openScans(input.scans);
+  const PcdScans scans = openScans(input.scans, 0);
   all.scans = planarScans(scans, options);
   warnOfCoordinates(scans, MapOptions().resolution);
   for (const PcdScan& scan : scans.files()) {
