@@ -24,7 +24,7 @@ struct PoseText {
   std::filesystem::path path;
   std::vector<TextLine> lines;     ///< without comments
   std::vector<TextLine> comments;  ///< those before the first line
-  char separator = ' ';            ///< between fields; a blank also stands for tabs
+  char separator = ' ';            ///< between fields; a blank also separates at tabs
 
   [[noreturn]] void fail(std::size_t line, const std::string& what) const;
 };
