@@ -46,7 +46,8 @@ void checkLimits(const PointLimits& limits);
 
 /// Filters the points of a scan, for all algorithms. Drops points that are not finite, at the sensor, or outside the
 /// limits, and transforms the rest into the map frame.
-GAUSSMAP_API PointCounts acceptPoints(const Pose& pose, ScanFrame frame, const PointLimits& limits, PointBlock<3>& block);
+GAUSSMAP_API PointCounts acceptPoints(const Pose& pose, ScanFrame frame, const PointLimits& limits,
+                                      PointBlock<3>& block);
 
 /// Filters a scan in memory like acceptPoints(). The points stay in their order and in the sensor frame; dropped
 /// points become NaN.

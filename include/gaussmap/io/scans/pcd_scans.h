@@ -18,7 +18,7 @@ namespace gaussmap {
 namespace detail {
 class CoordinateSamples;
 class KeptReaders;
-}
+}  // namespace detail
 
 /// A PCD file and the pose of its sensor.
 struct PcdScan {
