@@ -191,12 +191,14 @@ InferredLayout inferLayout(const PoseText& text, std::size_t first) {
     text.fail(samples.first_line, countText(samples) +
                                       " look like x y z roll pitch yaw, but the unit of the angles is "
                                       "not stated: use --pose-format xyzrpy-deg or xyzrpy-rad");
-  if (const std::optional<InferredLayout> usual = usualLayout(samples)) return *usual;
-  text.fail(samples.first_line,
-            countText(samples) +
-                " fit no known layout: expected 'time x y z qx qy qz qw' (TUM), the 12 numbers of a "
-                "matrix (KITTI), or a line with the names of the columns; name them with --pose-format "
-                "\"time x y z qx qy qz qw\"");
+  std::optional<InferredLayout> usual = usualLayout(samples);
+  if (!usual)
+    text.fail(samples.first_line,
+              countText(samples) +
+                  " fit no known layout: expected 'time x y z qx qy qz qw' (TUM), the 12 numbers of a "
+                  "matrix (KITTI), or a line with the names of the columns; name them with --pose-format "
+                  "\"time x y z qx qy qz qw\"");
+  return *usual;
 }
 
 PoseLayout layoutOfFormat(const PoseText& text, PoseFormat format, std::size_t first) {
