@@ -61,7 +61,7 @@ class HelpFormatter : public CLI::Formatter {
 
   /// "4", or "4..6" if the number of values can vary.
   static std::string countText(const CLI::Option& option) {
-    const std::string least = std::to_string(option.get_expected_min());
+    std::string least = std::to_string(option.get_expected_min());
     if (option.get_expected_max() == option.get_expected_min()) return least;
     return least + ".." + std::to_string(option.get_expected_max());
   }

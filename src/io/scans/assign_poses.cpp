@@ -34,7 +34,7 @@ std::string countText(std::size_t count, const std::string& what) {
 
 /// What to do about scans without a pose.
 std::string wayOut(PoseMatch match) {
-  const std::string skip = "use --skip-without-pose to leave such scans out";
+  std::string skip = "use --skip-without-pose to leave such scans out";
   if (match == PoseMatch::Time) return skip + ", or --max-time-gap if the nearest poses are right";
   if (match == PoseMatch::Index) return skip + ", or --match-poses order if the lines are in the order of the scans";
   return skip;
@@ -106,9 +106,11 @@ AssignedPoses assignPoses(std::vector<ScanPose>& scans, const FindScansOptions& 
   assigned.left_out.resize(scans.size());
   assigned.times.resize(scans.size());
   std::vector<std::filesystem::path> paths;
+  paths.reserve(scans.size());
   for (const ScanPose& scan : scans) paths.push_back(scan.path);
   const std::vector<std::string> names = scanNames(paths);
   std::vector<ScanKey> keys;
+  keys.reserve(names.size());
   for (const std::string& name : names) keys.push_back({name, std::nullopt});
   const std::vector<Decimal> written = numbersIn(names).times;
   const std::vector<Instant> times = timesIn(written, unitByMagnitude(largestOf(written)));

@@ -24,6 +24,7 @@ struct ScanNumbers {
 
 ScanNumbers numbersOfScans(const std::vector<ScanKey>& scans) {
   std::vector<std::string> names;
+  names.reserve(scans.size());
   for (const ScanKey& scan : scans) names.push_back(scan.name);
   NameNumbers found = numbersIn(names);
   ScanNumbers numbers;

@@ -103,7 +103,8 @@ std::optional<Instant> toTime(const Decimal& number, TimeUnit unit) {
 double secondsOf(Instant time) {
   // Whole seconds and the rest apart, so that the sum is rounded once.
   constexpr std::int64_t kBillion = 1000000000;
-  return static_cast<double>(time.count() / kBillion) + static_cast<double>(time.count() % kBillion) * 1e-9;
+  const std::int64_t seconds = time.count() / kBillion, rest = time.count() % kBillion;
+  return static_cast<double>(seconds) + static_cast<double>(rest) * 1e-9;
 }
 
 std::string timeText(Instant time) {
