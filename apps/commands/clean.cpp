@@ -16,7 +16,7 @@
 #include "common/report.h"
 #include "evaluation/removal_score.h"
 #include "gaussmap/mapping/moving/moving_points.h"
-#include "io/pcd/pcd_records.h"
+#include "io/pcd/scan_records.h"
 #include "io/scans/scan_names.h"
 
 namespace gaussmap::app {
@@ -43,15 +43,30 @@ struct CleanCommand {
   bool writes() const { return !folder.empty() || !merged.empty() || !removed.empty(); }
 };
 
+/// Returns the names of the cleaned scans. Scans of files with several scans get a number: drive_000007.pcd.
+std::vector<std::filesystem::path> copiesOf(const FileScans& scans) {
+  std::vector<std::filesystem::path> paths;
+  paths.reserve(scans.size());
+  for (const FileScan& scan : scans.files()) paths.push_back(scan.path);
+  std::vector<std::filesystem::path> copies = scanCopies(paths);
+  for (std::size_t i = 0; i < copies.size(); ++i) {
+    const FileScan& scan = scans.files()[i];
+    if (scan.name.empty()) continue;
+    std::string number = std::to_string(scan.index);
+    number.insert(0, 6 - std::min<std::size_t>(6, number.size()), '0');
+    copies[i].replace_filename(copies[i].stem().string() + "_" + number + ".pcd");
+  }
+  return copies;
+}
+
 /// Returns the path of each cleaned scan: FOLDER/NAME, or FOLDER/000000/cloud.pcd if the scans are called so. Throws
 /// UsageError if two scans have the same name.
-std::vector<std::filesystem::path> outputsFor(const PcdScans& scans, const std::string& folder) {
+std::vector<std::filesystem::path> outputsFor(const FileScans& scans, const std::string& folder) {
   std::map<std::filesystem::path, std::filesystem::path> taken;
-  std::vector<std::filesystem::path> outputs, paths;
-  for (const PcdScan& scan : scans.files()) paths.push_back(scan.path);
-  const std::vector<std::filesystem::path> copies = scanCopies(paths);
+  std::vector<std::filesystem::path> outputs;
+  const std::vector<std::filesystem::path> copies = copiesOf(scans);
   for (std::size_t i = 0; i < copies.size(); ++i) {
-    const PcdScan& scan = scans.files()[i];
+    const FileScan& scan = scans.files()[i];
     const std::filesystem::path& name = copies[i];
     const auto [entry, is_new] = taken.emplace(name, scan.path);
     if (!is_new)
@@ -63,10 +78,10 @@ std::vector<std::filesystem::path> outputsFor(const PcdScans& scans, const std::
 }
 
 /// Checks all outputs, creates the directory, and returns the paths of the cleaned scans. Throws UsageError.
-std::vector<std::filesystem::path> checkedOutputs(const CleanCommand& command, const PcdScans& scans) {
+std::vector<std::filesystem::path> checkedOutputs(const CleanCommand& command, const FileScans& scans) {
   std::vector<std::filesystem::path> inputs;
   inputs.reserve(scans.size() + 1);
-  for (const PcdScan& scan : scans.files()) inputs.push_back(scan.path);
+  for (const FileScan& scan : scans.files()) inputs.push_back(scan.path);
   if (!command.input.poses.empty()) inputs.emplace_back(command.input.poses);
   std::vector<std::filesystem::path> outputs;
   if (!command.folder.empty()) outputs = outputsFor(scans, command.folder);
@@ -85,7 +100,7 @@ std::vector<std::filesystem::path> checkedOutputs(const CleanCommand& command, c
 }
 
 /// `precision` [m]: if floats round coordinates of the map frame by more, they become doubles.
-void mergeInto(PcdRecords& all, PcdRecords part, const PcdScan& scan, ScanFrame frame, double precision) {
+void mergeInto(PcdRecords& all, PcdRecords part, const FileScan& scan, ScanFrame frame, double precision) {
   if (frame == ScanFrame::Sensor) moveToMap(part, scan.pose, precision);
   part.width = 0;
   part.viewpoint = Pose();
@@ -120,36 +135,50 @@ struct Cleaned {
   RemovalScore score;
 };
 
+bool hasValue(const FileScans& scans, std::size_t index, const std::string& name) {
+  const std::vector<std::string> names = scans.open(index)->valueNames();
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Returns all points of a scan with all their values.
+PcdRecords recordsOf(const FileScans& scans, std::size_t index) {
+  const Pose& pose = scans.files()[index].pose;
+  const std::optional<PcdReader> pcd = scans.pcd(index);
+  if (!pcd) return detail::recordsOf(*scans.open(index), pose);
+  PcdRecords records = readRecords(*pcd);
+  if (!poseFault(records.viewpoint).empty()) records.viewpoint = pose;  // the pose of --poses
+  return records;
+}
+
 /// Throws FileError for scans that cannot be scored or written. Runs before the long computation.
-void checkScans(const CleanCommand& command, const PcdScans& scans) {
+void checkScans(const CleanCommand& command, const FileScans& scans) {
   if (!command.labels.empty())
     for (std::size_t i = 0; i < scans.size(); ++i)
-      if (!scans.reader(i).header().find(command.labels))
+      if (!hasValue(scans, i, command.labels))
         throw FileError(scans.files()[i].path, "no field '" + command.labels + "', which --labels needs for the score");
   if (command.writes())
-    for (std::size_t i = 0; i < scans.size(); ++i) checkWritable(scans.reader(i));
+    for (std::size_t i = 0; i < scans.size(); ++i)
+      if (const std::optional<PcdReader> pcd = scans.pcd(i)) checkWritable(*pcd);
 }
 
 /// Writes every scan without its moving points. `outputs` has one path per scan, or is empty.
-Cleaned writeCleaned(const CleanCommand& command, const PcdScans& scans, const MovingPoints& moving,
+Cleaned writeCleaned(const CleanCommand& command, const FileScans& scans, const MovingPoints& moving,
                      const std::vector<std::filesystem::path>& outputs) {
   Cleaned cleaned;
   PcdRecords merged, removed;
   const double precision = 1e-3 * command.options.resolution;
   bool floats = true;
   for (std::size_t i = 0; i < scans.size(); ++i) {
-    const PcdReader reader = scans.reader(i);
     std::vector<bool> is_moving = moving.inScan(i), is_still = is_moving;
     is_still.flip();
     cleaned.points += is_moving.size();
     cleaned.removed += static_cast<std::size_t>(std::count(is_moving.begin(), is_moving.end(), true));
     if (!command.labels.empty()) {
-      const std::vector<double> labels = reader.column(command.labels);
+      const std::vector<double> labels = scans.open(i)->values(command.labels);
       for (std::size_t p = 0; p < labels.size(); ++p) cleaned.score.add(labels[p] != 0.0, is_moving[p]);
     }
     if (!command.writes()) continue;
-    PcdRecords records = readRecords(reader);
-    if (!poseFault(records.viewpoint).empty()) records.viewpoint = scans.files()[i].pose;  // the pose of --poses
+    const PcdRecords records = recordsOf(scans, i);
     const auto part = [&](const std::vector<bool>& keep, bool organised) {
       PcdRecords kept = records;
       if (!organised) kept.width = 0;
@@ -182,8 +211,8 @@ void run(CleanCommand command) {
   evidence.min_range = input.min_range;
   evidence.crop = input.crop;
   evidence.visibility.noise = depthNoise(command.depth_noise);
-  const auto files = std::make_shared<const PcdScans>(openScans(command.input, evidence.threads, "clean"));
-  const PcdScans& scans = *files;
+  const auto files = std::make_shared<const FileScans>(openScans(command.input, evidence.threads, "clean"));
+  const FileScans& scans = *files;
   if (scans.size() == 1)
     throw FileError(scans.files()[0].path,
                     "one cloud alone shows no motion, and a cloud that was merged from scans does not say where the "

@@ -14,12 +14,12 @@ const std::vector<std::string> kIntensityFields = {"intensity", "intensities", "
                                                    "remission"};
 const std::vector<std::string> kColourFields = {"rgb", "rgba", "r", "red"};
 
-bool hasField(const PcdHeader& header, const std::vector<std::string>& names, std::string& found) {
-  for (const PcdField& field : header.fields) {
-    std::string lower = field.name;
+bool hasValue(const std::vector<std::string>& values, const std::vector<std::string>& names, std::string& found) {
+  for (const std::string& value : values) {
+    std::string lower = value;
     for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
     if (std::find(names.begin(), names.end(), lower) == names.end()) continue;
-    found = field.name;
+    found = value;
     return true;
   }
   return false;
@@ -27,12 +27,12 @@ bool hasField(const PcdHeader& header, const std::vector<std::string>& names, st
 
 }  // namespace
 
-void noteDroppedFields(const PcdScans& scans) {
+void noteDroppedFields(const FileScans& scans) {
   if (scans.size() == 0) return;
-  const PcdReader reader = scans.reader(0);
+  const std::vector<std::string> values = scans.open(0)->valueNames();
   std::string intensity, colour;
-  const bool has_intensity = hasField(reader.header(), kIntensityFields, intensity);
-  const bool has_colour = hasField(reader.header(), kColourFields, colour);
+  const bool has_intensity = hasValue(values, kIntensityFields, intensity);
+  const bool has_colour = hasValue(values, kColourFields, colour);
   if (!has_intensity && !has_colour) return;
   const std::string both = has_intensity && has_colour ? " and " : "";
   note("the map keeps only geometry: the field" + std::string(both.empty() ? " " : "s ") + intensity + both + colour +

@@ -9,7 +9,7 @@
 #include "commands/pcd2map/scan_report.h"
 #include "common/command.h"
 #include "common/report.h"
-#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/io/scans/file_scans.h"
 
 namespace gaussmap::app {
 namespace {
@@ -42,7 +42,7 @@ void run(const Pcd2mapOptions& options) {
   checkMemory(options);
 
   accumulateOptions(options.input, options.map.resolution, 0);  // checks the options before files are read
-  const PcdScans scans =
+  const FileScans scans =
       openScans(options.input, options.budget.refine.threads, options.online.on ? "--online" : nullptr);
   noteDroppedFields(scans);
   const AccumulateOptions reading =

@@ -71,7 +71,7 @@ void addPoseMeaning(Command& command, PoseMeaning& meaning) {
 }
 
 std::string faultOfPoses(FoundScans& found, PoseConvention convention, int threads) {
-  PcdScans& scans = found.scans;
+  FileScans& scans = found.scans;
   detail::PoseCheckOptions options;
   options.convention = convention;
   options.threads = threads;

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "common/command.h"
-#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/io/scans/file_scans.h"
 
 namespace gaussmap::app {
 

@@ -14,7 +14,7 @@
 #include "common/report.h"
 #include "core/accept_points.h"
 #include "gaussmap/io/pcd/map_pcd.h"
-#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/io/scans/file_scans.h"
 #include "gaussmap/registration/registration.h"
 #include "simulation/trajectory.h"
 
@@ -84,7 +84,7 @@ RegistrationResult registerFile(const std::filesystem::path& path, const Gaussia
     if (source.empty()) throw FileError(path, "the map is empty");
     return registerMap(source, map, guess, command.options);
   }
-  const PcdScans scans({{path, Pose()}});
+  const FileScans scans({{path, Pose()}});
   Scan scan = scans.read(0);
   warnOfCoordinates(scans, map.grid().side(0));
   detail::dropPoints(detail::limitsOf(accumulateOptions(command.input, map.grid().side(0), 0)), scan);

@@ -141,7 +141,7 @@ FindScansOptions findOptions(const ScanInput& input) {
   return options;
 }
 
-PcdScans openScans(const ScanInput& input, int threads, const char* follows_rays) {
+FileScans openScans(const ScanInput& input, int threads, const char* follows_rays) {
   FoundScans found = findScans({input.paths.begin(), input.paths.end()}, findOptions(input));
   if (follows_rays) requireSensorPositions(found.scans, follows_rays);
   if (!input.poses.empty()) note(found.poses);
@@ -163,12 +163,12 @@ AccumulateOptions accumulateOptions(const ScanInput& input, double resolution, i
   return options;
 }
 
-void warnOfCoordinates(const PcdScans& scans, double resolution) {
+void warnOfCoordinates(const FileScans& scans, double resolution) {
   for (const std::string& warning : scans.coordinateWarnings(resolution)) warn(warning);
 }
 
 std::vector<Vector<3>> readPoints(const ScanInput& input, int threads, double resolution) {
-  const PcdScans scans = openScans(input, threads);
+  const FileScans scans = openScans(input, threads);
   std::vector<Vector<3>> points = gaussmap::readPoints(scans, accumulateOptions(input, 1.0, threads));
   warnOfCoordinates(scans, resolution);
   if (points.empty()) throw std::runtime_error(nameOf(scans) + ": no point is usable");

@@ -8,7 +8,7 @@
 
 #include "commands/pose_meaning.h"
 #include "common/command.h"
-#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/io/scans/file_scans.h"
 #include "gaussmap/mapping/build.h"
 
 namespace gaussmap::app {
@@ -43,9 +43,9 @@ FindScansOptions findOptions(const ScanInput& input);
 /// Calls findScans(). Prints its warnings on stderr, and, with a pose file, how the poses were found. For a command
 /// that follows the rays of the sensor, `follows_rays` is its name; the function then calls requireSensorPositions()
 /// first. Throws like these functions, and std::runtime_error if the check of poses finds a fault, see faultOfPoses().
-PcdScans openScans(const ScanInput& input, int threads, const char* follows_rays = nullptr);
-/// Prints warnings about the coordinates that were read, see PcdScans::coordinateWarnings(). Call it after reading.
-void warnOfCoordinates(const PcdScans& scans, double resolution);
+FileScans openScans(const ScanInput& input, int threads, const char* follows_rays = nullptr);
+/// Prints warnings about the coordinates that were read, see FileScans::coordinateWarnings(). Call it after reading.
+void warnOfCoordinates(const FileScans& scans, double resolution);
 /// Throws UsageError for ranges or a box that hold no point.
 AccumulateOptions accumulateOptions(const ScanInput& input, double resolution, int threads);
 /// Returns all points of the scans [m, map frame]. Throws std::runtime_error if no point is usable. Warns of

@@ -46,7 +46,7 @@ void extend(std::optional<Box<3>>& box, const Eigen::Vector3d& point) {
   box->high = box->high.cwiseMax(point);
 }
 
-ScanPoints pointsOf(const PcdScans& scans, std::size_t index, const detail::PointLimits& limits) {
+ScanPoints pointsOf(const FileScans& scans, std::size_t index, const detail::PointLimits& limits) {
   ScanPoints result;
   const Pose pose = scans.info(index).pose;
   const std::unique_ptr<ScanReader> reader = scans.open(index);
@@ -63,20 +63,18 @@ ScanPoints pointsOf(const PcdScans& scans, std::size_t index, const detail::Poin
   return result;
 }
 
-std::string kindOf(const PcdHeader& header) {
-  const char* const encoding = header.encoding == PcdEncoding::Ascii    ? "ascii"
-                               : header.encoding == PcdEncoding::Binary ? "binary"
-                                                                        : "binary_compressed";
-  return std::string("PCD ") + encoding + (header.height > 1 ? ", organised" : "");
-}
-
-std::string fieldsText(const PcdHeader& header) {
+std::string fieldsText(const FileScans& scans, std::size_t index) {
   std::string text;
-  for (const PcdField& field : header.fields) {
-    if (field.name == "_") continue;
-    text += (text.empty() ? "" : " ") + field.name;
-    if (field.count > 1) text += "[" + std::to_string(field.count) + "]";
+  if (const std::optional<PcdReader> pcd = scans.pcd(index)) {
+    for (const PcdField& field : pcd->header().fields) {
+      if (field.name == "_") continue;
+      text += (text.empty() ? "" : " ") + field.name;
+      if (field.count > 1) text += "[" + std::to_string(field.count) + "]";
+    }
+    return text;
   }
+  text = "x y z";
+  for (const std::string& name : scans.open(index)->valueNames()) text += " " + name;
   return text;
 }
 
@@ -96,7 +94,7 @@ struct Table {
   std::vector<double> times;
 };
 
-Table tableOf(const PcdScans& scans, const detail::PointLimits& limits) {
+Table tableOf(const FileScans& scans, const detail::PointLimits& limits) {
   Table table;
   ProgressBar bar;
   for (std::size_t i = 0; i < scans.size(); ++i) {
@@ -104,9 +102,8 @@ Table tableOf(const PcdScans& scans, const detail::PointLimits& limits) {
     const ScanPoints& points = table.points.back();
     table.counts += points.counts;
     if (points.box) extend(table.box, points.box->low), extend(table.box, points.box->high);
-    const PcdHeader header = scans.reader(i).header();
-    ++table.kinds[kindOf(header)];
-    ++table.fields[fieldsText(header)];
+    ++table.kinds[scans.kind(i)];
+    ++table.fields[fieldsText(scans, i)];
     if (scans.files()[i].time) table.times.push_back(*scans.files()[i].time);
     bar.show({i + 1, scans.size(), 0, 0});
   }
@@ -137,14 +134,13 @@ std::string boxText(const std::optional<Box<3>>& box) {
 Json jsonOf(const FoundScans& found, const Table& table) {
   Json scans = Json::array();
   for (std::size_t i = 0; i < found.scans.size(); ++i) {
-    const PcdScan& scan = found.scans.files()[i];
-    const PcdHeader header = found.scans.reader(i).header();
+    const FileScan& scan = found.scans.files()[i];
     const Pose::Rotation& q = scan.pose.rotation;
     Json one = {{"file", scan.path.string()},
-                {"kind", kindOf(header)},
+                {"kind", found.scans.kind(i)},
                 {"points", table.points[i].counts.read},
                 {"accepted", table.points[i].counts.accepted},
-                {"fields", fieldsText(header)},
+                {"fields", fieldsText(found.scans, i)},
                 {"translation", vectorJson(scan.pose.translation)},
                 {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
     if (scan.time) one["time"] = *scan.time;
@@ -172,7 +168,7 @@ void printRow(const char* name, const std::string& value) {
 }
 
 void print(const FoundScans& found, const Table& table, bool each) {
-  const std::vector<PcdScan>& files = found.scans.files();
+  const std::vector<FileScan>& files = found.scans.files();
   std::string names = std::to_string(files.size());
   if (!files.empty()) names += ": " + files.front().path.string();
   if (files.size() > 1) names += " .. " + files.back().path.string();

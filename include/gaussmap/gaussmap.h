@@ -20,7 +20,7 @@
 #include "gaussmap/io/gmap/map_reader.h"
 #include "gaussmap/io/gmap/map_update.h"
 #include "gaussmap/io/pcd/map_pcd.h"
-#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/io/scans/file_scans.h"
 #include "gaussmap/map/gaussian_map.h"
 #include "gaussmap/map/queries.h"
 #include "gaussmap/mapping/build.h"

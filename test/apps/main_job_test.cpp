@@ -7,7 +7,7 @@
 #include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
 #include "gaussmap/io/pcd/pcd_writer.h"
-#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/io/scans/file_scans.h"
 #include "gaussmap/mapping/build.h"
 #include "io/gmap/map_equality.h"
 
@@ -19,9 +19,9 @@ namespace fs = std::filesystem;
 TEST_F(Apps, MakeAMapOfScansAndSayHowGoodItIs) {
   const std::vector<fs::path> scans = listScans({scene("scans")});
   ASSERT_EQ(scans.size(), 5u);
-  std::vector<PcdScan> sources;
+  std::vector<FileScan> sources;
   for (const fs::path& scan : scans) sources.push_back({scan, normalised(PcdReader(scan).header().viewpoint)});
-  const AccumulatedScans truth = accumulateScans(PcdScans(sources), {});
+  const AccumulatedScans truth = accumulateScans(FileScans(sources), {});
 
   const Json made = Json::parse(succeed({"pcd2map", scene("scans"), "-o", own("a.gmap"), "--budget", "3", "--json"}));
   EXPECT_EQ(made["scans"], 5);

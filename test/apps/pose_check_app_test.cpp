@@ -6,7 +6,7 @@
 
 #include "apps/app_fixture.h"
 #include "gaussmap/io/pcd/pcd_writer.h"
-#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/io/scans/file_scans.h"
 
 namespace gaussmap::test {
 namespace {
@@ -107,9 +107,9 @@ TEST_F(PoseCheckApp, StopsForAViewpointWithWLast) {
 TEST_F(PoseCheckApp, StopsForAWrongFrame) {
   expectDataError("without --frame map", {"pcd2map", hall("scans"), "-o", own("a.gmap"), "--frame", "map"});
   fs::create_directory(own("moved"));
-  const PcdScans scans = findScans({hall("scans")}).scans;
-  for (const PcdScan& file : scans.files()) {
-    const Scan scan = PcdScans({file}).read(0);
+  const FileScans scans = findScans({hall("scans")}).scans;
+  for (const FileScan& file : scans.files()) {
+    const Scan scan = FileScans({file}).read(0);
     std::vector<Vector<3>> points;
     for (const Eigen::Vector3d& point : scan.points) points.emplace_back(scan.pose * point);
     writePcd(own("moved/") + file.path.filename().string(), points, PcdPrecision::Float, scan.pose);

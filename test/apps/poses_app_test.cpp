@@ -6,7 +6,7 @@
 #include "apps/app_fixture.h"
 #include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
-#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/io/scans/file_scans.h"
 #include "io/gmap/map_equality.h"
 
 namespace gaussmap::test {

@@ -4,7 +4,7 @@
 
 #include "apps/app_fixture.h"
 #include "gaussmap/io/pcd/pcd_writer.h"
-#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/io/scans/file_scans.h"
 
 namespace gaussmap::test {
 namespace {

@@ -6,7 +6,7 @@
 #include "apps/app_fixture.h"
 #include "gaussmap/io/mesh/ply.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
-#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/io/scans/file_scans.h"
 #include "gaussmap/io/scans/pose_file.h"
 #include "mesh/mesh_distance.h"
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "clock.h"
-#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/io/scans/file_scans.h"
 #include "simulation/simulation.h"
 
 namespace gaussmap::benchmark {

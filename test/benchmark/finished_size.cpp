@@ -18,7 +18,7 @@
 #include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/io/mesh/ply.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
-#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/io/scans/file_scans.h"
 #include "gaussmap/map/sampling.h"
 #include "gaussmap/mapping/build.h"
 #include "gaussmap/mapping/refine.h"
@@ -107,15 +107,15 @@ double compare(const std::vector<Scan>& scans, const MeshDistance& truth, bool r
 }
 
 void compareSizes(const fs::path& folder) {
-  std::vector<PcdScan> sources;
+  std::vector<FileScan> sources;
   std::vector<Scan> scans;
   for (const fs::path& path : listScans({folder / "scans"})) {
     sources.push_back({path, normalised(PcdReader(path).header().viewpoint)});
-    scans.push_back(PcdScans({sources.back()}).read(0));
+    scans.push_back(FileScans({sources.back()}).read(0));
   }
   const MeshDistance truth(readPly(folder / "truth.ply"));
   const GaussianMap<3> map =
-      refine<3>(build<3>(accumulateScans(PcdScans(sources), {}).moments, MapOptions()), PerCell{2.0}).map;
+      refine<3>(build<3>(accumulateScans(FileScans(sources), {}).moments, MapOptions()), PerCell{2.0}).map;
 
   std::string work = (fs::temp_directory_path() / "gaussmap-finished-XXXXXX").string();
   if (::mkdtemp(work.data()) == nullptr) throw std::runtime_error("no temporary directory");

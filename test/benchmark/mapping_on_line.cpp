@@ -3,7 +3,7 @@
 
 #include "gaussmap/core/scans.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
-#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/io/scans/file_scans.h"
 #include "gaussmap/mapping/online/online_mapper.h"
 #include "measure.h"
 #include "parts.h"
@@ -28,7 +28,7 @@ std::vector<Scan> simulatedScans() {
 std::vector<Scan> scansIn(const std::filesystem::path& folder) {
   std::vector<Scan> scans;
   for (const auto& path : listScans({folder}))
-    scans.push_back(PcdScans({{path, normalised(PcdReader(path).header().viewpoint)}}).read(0));
+    scans.push_back(FileScans({{path, normalised(PcdReader(path).header().viewpoint)}}).read(0));
   return scans;
 }
 

@@ -17,7 +17,7 @@
 #include "clock.h"
 #include "evaluation/removal_score.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
-#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/io/scans/file_scans.h"
 #include "gaussmap/mapping/moving/moving_points.h"
 #include "gaussmap/mapping/online/online_mapper.h"
 #include "subcommands.h"
@@ -28,7 +28,7 @@ using namespace detail;
 namespace {
 
 struct Sequence {
-  std::vector<PcdScan> sources;
+  std::vector<FileScan> sources;
   std::vector<Scan> scans;
   std::vector<std::vector<double>> labels;  // 0 = static
 
@@ -36,7 +36,7 @@ struct Sequence {
     for (const auto& path : listScans({folder})) {
       const PcdReader reader(path);
       sources.push_back({path, normalised(reader.header().viewpoint)});
-      scans.push_back(PcdScans({sources.back()}).read(0));
+      scans.push_back(FileScans({sources.back()}).read(0));
       labels.emplace_back(scans.back().points.size(), 0.0);
       if (reader.header().find("label")) labels.back() = reader.column("label");
     }
@@ -67,7 +67,7 @@ void clean(const Sequence& sequence, double resolution) {
   options.resolution = resolution;
   options.evidence.threads = 1;
   const double start = wallSeconds();
-  const MovingPoints moving(std::make_shared<const PcdScans>(sequence.sources), options);
+  const MovingPoints moving(std::make_shared<const FileScans>(sequence.sources), options);
   const double seconds = wallSeconds() - start;
   std::vector<std::vector<bool>> flags;
   for (std::size_t s = 0; s < sequence.scans.size(); ++s) flags.push_back(moving.inScan(s));

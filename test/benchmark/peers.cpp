@@ -9,7 +9,7 @@
 #include <random>
 
 #include "gaussmap/io/pcd/pcd_reader.h"
-#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/io/scans/file_scans.h"
 #include "gaussmap/mapping/build.h"
 #include "parts.h"
 #include "street_points.h"
@@ -28,9 +28,9 @@ Cloud::Ptr cloudOf(const std::vector<Vector<3>>& points) {
 namespace {
 
 Cloud::Ptr scansIn(const std::filesystem::path& folder) {
-  std::vector<PcdScan> scans;
+  std::vector<FileScan> scans;
   for (const auto& path : listScans({folder})) scans.push_back({path, normalised(PcdReader(path).header().viewpoint)});
-  return cloudOf(readPoints(PcdScans(scans), {}));
+  return cloudOf(readPoints(FileScans(scans), {}));
 }
 
 Cloud::Ptr shuffled(const Cloud& cloud) {

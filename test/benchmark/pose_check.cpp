@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "clock.h"
-#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/io/scans/file_scans.h"
 #include "registration/pose_pairs.h"
 #include "registration/scan_surfaces.h"
 #include "simulation/simulation.h"

@@ -12,7 +12,7 @@
 
 #include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
-#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/io/scans/file_scans.h"
 #include "gaussmap/mapping/build.h"
 #include "subcommands.h"
 
@@ -21,14 +21,14 @@ namespace {
 
 void compareWithReference(const std::string& map_file, const std::string& folder, ScanFrame frame) {
   const GaussianMapOctree map = load(map_file);
-  std::vector<PcdScan> scans;
+  std::vector<FileScan> scans;
   for (const auto& path : listScans({folder})) scans.push_back({path, normalised(PcdReader(path).header().viewpoint)});
   AccumulateOptions options;
 
   // Points within half a lattice step of a border can be on either side of it. For these points the map decides.
   const long double side = static_cast<long double>(map.options().resolution), half_step = 0x1.0p-17L;
   std::map<CellKey<3>, std::vector<Vector<3>>> cells;
-  for (const Vector<3>& point : readPoints(PcdScans(scans, frame), options)) {
+  for (const Vector<3>& point : readPoints(FileScans(scans, frame), options)) {
     CellKey<3> key;
     for (int axis = 0; axis < 3; ++axis) {
       const long double exact = static_cast<long double>(point(axis)) / side;

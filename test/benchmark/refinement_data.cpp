@@ -2,7 +2,7 @@
 #include "refinement_data.h"
 
 #include "gaussmap/io/pcd/pcd_reader.h"
-#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/io/scans/file_scans.h"
 #include "gaussmap/mapping/build.h"
 #include "points/nearest_distances.h"
 
@@ -43,7 +43,7 @@ DataSet scan(const std::string& name, const std::filesystem::path& path, const M
     reading.max_range = max_range;
     const Pose pose = normalised(PcdReader(path).header().viewpoint);
     LoadedData data;
-    for (const Vector<3>& point : readPoints(PcdScans({{path, pose}}), reading))
+    for (const Vector<3>& point : readPoints(FileScans({{path, pose}}), reading))
       if ((point - pose.translation).norm() >= min_range) data.points.push_back(point);
     data.truth = data.points;
     return data;

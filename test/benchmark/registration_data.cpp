@@ -7,7 +7,7 @@
 #include "gaussmap/core/gaussian.h"
 #include "gaussmap/core/scans.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
-#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/io/scans/file_scans.h"
 #include "simulation/simulation.h"
 
 namespace gaussmap::benchmark {
@@ -52,8 +52,8 @@ std::vector<ScanPair> filePairs(const std::filesystem::path& directory, std::siz
     const auto& a = files[i];
     const auto& b = files[i + step];
     pairs.push_back(
-        {a.stem().string() + "-" + b.stem().string(), returnsOf(PcdScans({{a, Pose()}}).read(0).points),
-         returnsOf(PcdScans({{b, Pose()}}).read(0).points),
+        {a.stem().string() + "-" + b.stem().string(), returnsOf(FileScans({{a, Pose()}}).read(0).points),
+         returnsOf(FileScans({{b, Pose()}}).read(0).points),
          relative(normalised(PcdReader(a).header().viewpoint), normalised(PcdReader(b).header().viewpoint))});
   }
   return pairs;

@@ -8,7 +8,7 @@
 #include "gaussmap/core/error.h"
 #include "gaussmap/core/gaussian.h"
 #include "gaussmap/io/pcd/pcd_writer.h"
-#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/io/scans/file_scans.h"
 #include "gaussmap/mapping/build.h"
 #include "gaussmap/mapping/online/online_mapper.h"
 #include "gaussmap/sensor/projection.h"
@@ -29,7 +29,7 @@ TEST(ReadScan, KeepsAllPointsInTheirOrder) {
   points[701] = Vector<3>::Zero();
   const auto path = directory.path() / "scan.pcd";
   writePcd(path, points, PcdPrecision::Double);
-  const Scan scan = PcdScans({{path, somePose()}}).read(0);
+  const Scan scan = FileScans({{path, somePose()}}).read(0);
   ASSERT_EQ(scan.points.size(), points.size());
   for (std::size_t i = 0; i < points.size(); ++i) ASSERT_TRUE(i == 700 || scan.points[i] == points[i]);
   EXPECT_FALSE(isReturn(scan.points[700]));
@@ -48,7 +48,7 @@ TEST(ReadScan, MovesPointsOfTheMapIntoTheSensorsFrame) {
   in_map.push_back(pose.translation);  // the sensor's own place
   const auto path = directory.path() / "scan.pcd";
   writePcd(path, in_map, PcdPrecision::Double);
-  const Scan scan = PcdScans({{path, pose}}, ScanFrame::Map).read(0);
+  const Scan scan = FileScans({{path, pose}}, ScanFrame::Map).read(0);
   for (std::size_t i = 0; i < in_sensor.size(); ++i) ASSERT_LT((scan.points[i] - in_sensor[i]).norm(), 1e-13);
   EXPECT_FALSE(isReturn(scan.points.back()));
 }
@@ -61,22 +61,22 @@ TEST(ReadScan, KnowsTheRowsOfAnOrganisedCloud) {
                                          pcdOutput("z", &numbers[2], 1, stride)};
   const auto path = directory.path() / "scan.pcd";
   writePcd(path, 24, fields, std::nullopt, 8);
-  EXPECT_EQ(PcdScans({{path, {}}}).read(0).columns, 8);
-  EXPECT_EQ(PcdScans({{path, {}}}).read(0).points.size(), 24u);
+  EXPECT_EQ(FileScans({{path, {}}}).read(0).columns, 8);
+  EXPECT_EQ(FileScans({{path, {}}}).read(0).points.size(), 24u);
 }
 
 TEST(ReadScan, TakesAScanWithoutPointsAndRefusesAMissingFile) {
   const test::TemporaryDirectory directory;
   const auto path = directory.path() / "scan.pcd";
   writePcd(path, std::vector<Vector<3>>{});
-  EXPECT_TRUE(PcdScans({{path, {}}}).read(0).points.empty());
-  EXPECT_THROW(PcdScans({{directory.path() / "none.pcd", {}}}).read(0), FileError);
+  EXPECT_TRUE(FileScans({{path, {}}}).read(0).points.empty());
+  EXPECT_THROW(FileScans({{directory.path() / "none.pcd", {}}}).read(0), FileError);
 }
 
 TEST(MemoryScansTest, GiveTheSameSumsAsTheSamePointsInFiles) {
   const test::TemporaryDirectory directory;
   MemoryScans in_memory;
-  std::vector<PcdScan> in_files;
+  std::vector<FileScan> in_files;
   for (std::uint64_t i = 0; i < 3; ++i) {
     const std::vector<Vector<3>> points = test::randomCloud<3>(2000, 10 + i);
     Pose pose = somePose();
@@ -85,7 +85,7 @@ TEST(MemoryScansTest, GiveTheSameSumsAsTheSamePointsInFiles) {
     in_files.push_back({directory.path() / (std::to_string(i) + ".pcd"), pose});
     writePcd(in_files.back().path, points, PcdPrecision::Double);
   }
-  const AccumulatedScans a = accumulateScans(in_memory, {}), b = accumulateScans(PcdScans(in_files), {});
+  const AccumulatedScans a = accumulateScans(in_memory, {}), b = accumulateScans(FileScans(in_files), {});
   ASSERT_EQ(a.moments.size(), b.moments.size());
   for (std::size_t i = 0; i < a.moments.size(); ++i) ASSERT_EQ(*b.moments.find(a.moments[i].key), a.moments[i].moments);
   EXPECT_EQ(in_memory.info(2).name, "scan 2");
@@ -109,18 +109,18 @@ TEST(MemoryScansTest, TakeFloatsOfOtherRecords) {
   EXPECT_EQ(scans.read(0).points, (std::vector<Eigen::Vector3d>{{1, 2, 3}, {4, 5, 6}}));
 }
 
-TEST(PcdScansTest, OpenEachFileOnce) {
+TEST(FileScansTest, OpenEachFileOnce) {
   const test::TemporaryDirectory directory;
   const auto path = directory.path() / "scan.pcd";
   writePcd(path, test::randomCloud<3>(1000, 20), PcdPrecision::Double);
-  const PcdScans scans({{path, {}}});
+  const FileScans scans({{path, {}}});
   const Scan before = scans.read(0);
   std::filesystem::remove(path);  // what is open stays readable
   EXPECT_EQ(scans.read(0).points, before.points);
   EXPECT_THROW(scans.open(1), std::out_of_range);
 }
 
-TEST(PcdScansTest, CarryTheValuesOfTheirPoints) {
+TEST(FileScansTest, CarryTheValuesOfTheirPoints) {
   const test::TemporaryDirectory directory;
   const auto path = directory.path() / "scan.pcd";
   const std::vector<float> xyz = {1, 2, 3, 4, 5, 6}, colour = {7, 8, 9, 10};
@@ -129,7 +129,7 @@ TEST(PcdScansTest, CarryTheValuesOfTheirPoints) {
   writePcd(path, 2,
            {pcdOutput("x", &xyz[0], 1, stride), pcdOutput("y", &xyz[1], 1, stride), pcdOutput("z", &xyz[2], 1, stride),
             pcdOutput("uv", colour.data(), 2), pcdOutput("ring", rings.data())});
-  const PcdScans scans({{path, {}}});
+  const FileScans scans({{path, {}}});
   const std::unique_ptr<ScanReader> reader = scans.open(0);
   EXPECT_EQ(reader->valueNames(), (std::vector<std::string>{"uv[0]", "uv[1]", "ring"}));
   EXPECT_EQ(reader->values("uv[1]"), (std::vector<double>{8, 10}));

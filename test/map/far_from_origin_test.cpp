@@ -7,7 +7,7 @@
 
 #include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/io/pcd/pcd_writer.h"
-#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/io/scans/file_scans.h"
 #include "gaussmap/mapping/build.h"
 #include "gaussmap/mapping/online/online_mapper.h"
 #include "gaussmap/mapping/refine.h"
@@ -54,7 +54,7 @@ std::vector<Vector<3>> latticeCloud(std::size_t count, std::uint64_t seed) {
 
 TEST(FarFromTheOrigin, AMapOfScansIsTheSameThroughAllOfItsLife) {
   const TemporaryDirectory directory;
-  std::vector<PcdScan> near, far;
+  std::vector<FileScan> near, far;
   for (std::uint64_t i = 0; i < 3; ++i) {
     const auto path = directory.path() / ("scan" + std::to_string(i) + ".pcd");
     writePcd(path, latticeCloud(4000, 81 + i), PcdPrecision::Float);
@@ -66,8 +66,8 @@ TEST(FarFromTheOrigin, AMapOfScansIsTheSameThroughAllOfItsLife) {
   }
   AccumulateOptions reading;
   reading.resolution = kOptions.resolution;
-  const auto mapOf = [&](const std::vector<PcdScan>& scans) {
-    return build<3>(accumulateScans(PcdScans(scans), reading).moments, kOptions);
+  const auto mapOf = [&](const std::vector<FileScan>& scans) {
+    return build<3>(accumulateScans(FileScans(scans), reading).moments, kOptions);
   };
   GaussianMapOctree here = mapOf(near), there = mapOf(far);
   expectShifted(here, there);

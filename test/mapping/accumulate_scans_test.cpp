@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/io/scans/file_scans.h"
 #include "gaussmap/mapping/build.h"
 
 #include <gtest/gtest.h>
@@ -56,14 +56,14 @@ AccumulateOptions withThreads(int threads) {
 
 class AccumulateScans : public testing::Test {
  protected:
-  PcdScan write(const std::vector<Vector<3>>& points, const Pose& pose = {}) {
+  FileScan write(const std::vector<Vector<3>>& points, const Pose& pose = {}) {
     const fs::path path = directory_.path() / ("scan" + std::to_string(next_++) + ".pcd");
     writePcd(path, points, PcdPrecision::Double, pose);
     return {path, pose};
   }
   PointCounts countsOf(const std::vector<Vector<3>>& points, const AccumulateOptions& options, const Pose& pose = {},
                        ScanFrame frame = ScanFrame::Sensor) {
-    const PcdScans scans({write(points, pose)}, frame);
+    const FileScans scans({write(points, pose)}, frame);
     const AccumulatedScans all = accumulateScans(scans, options);
     EXPECT_EQ(all.counts.read, static_cast<std::int64_t>(points.size()));
     EXPECT_EQ(all.counts.read,
@@ -79,7 +79,7 @@ class AccumulateScans : public testing::Test {
 
 TEST_F(AccumulateScans, CountsThePointsThatTheirPosesMove) {
   MomentGrid<3> expected(0.1);
-  std::vector<PcdScan> scans;
+  std::vector<FileScan> scans;
   for (std::uint64_t scan = 0; scan < 5; ++scan) {
     const std::vector<Vector<3>> points = randomCloud<3>(2000, 80 + scan);
     scans.push_back(write(points, somePose(scan)));
@@ -89,23 +89,23 @@ TEST_F(AccumulateScans, CountsThePointsThatTheirPosesMove) {
       expected.addPoints({moved(scans.back().pose, point)});
     }
   }
-  const AccumulatedScans all = accumulateScans(PcdScans(scans), {});
+  const AccumulatedScans all = accumulateScans(FileScans(scans), {});
   EXPECT_EQ(cellsOf(all.moments), cellsOf(expected));
   EXPECT_EQ(all.counts.accepted, 10000);
   MomentGrid<3> read(0.1);
-  read.addPoints(readPoints(PcdScans(scans), {}));
+  read.addPoints(readPoints(FileScans(scans), {}));
   EXPECT_EQ(cellsOf(read), cellsOf(expected));
 }
 
 TEST_F(AccumulateScans, GivesTheSameCellsForAnyOrderAndThreads) {
-  std::vector<PcdScan> scans;
+  std::vector<FileScan> scans;
   for (std::uint64_t scan = 0; scan < 12; ++scan)
     scans.push_back(write(randomCloud<3>(3000, 90 + scan), somePose(scan)));
-  const Cells expected = cellsOf(accumulateScans(PcdScans(scans), withThreads(1)).moments);
+  const Cells expected = cellsOf(accumulateScans(FileScans(scans), withThreads(1)).moments);
   Random random(1);
   for (const int threads : {1, 2, 0, 2, 2, 2}) {
     for (std::size_t i = scans.size(); i > 1; --i) std::swap(scans[i - 1], scans[random.below(i)]);
-    const AccumulatedScans all = accumulateScans(PcdScans(scans), withThreads(threads));
+    const AccumulatedScans all = accumulateScans(FileScans(scans), withThreads(threads));
     EXPECT_EQ(cellsOf(all.moments), expected);
     EXPECT_EQ(all.counts.read, 36000);
     EXPECT_EQ(all.counts.accepted, 36000);
@@ -116,19 +116,19 @@ TEST_F(AccumulateScans,
        GivesTheSameCellsForOneBigScanAndManySmall) {  // 300,001 points: several tasks, the last one short
   const std::vector<Vector<3>> points = randomCloud<3>(300001, 100);
   const Pose pose = somePose(7);
-  const std::vector<PcdScan> one = {write(points, pose)};
-  std::vector<PcdScan> many;
+  const std::vector<FileScan> one = {write(points, pose)};
+  std::vector<FileScan> many;
   for (std::size_t first = 0; first < points.size(); first += 30011)
     many.push_back(write({points.begin() + static_cast<std::ptrdiff_t>(first),
                           points.begin() + static_cast<std::ptrdiff_t>(std::min(points.size(), first + 30011))},
                          pose));
-  const Cells expected = cellsOf(accumulateScans(PcdScans(one), withThreads(1)).moments);
+  const Cells expected = cellsOf(accumulateScans(FileScans(one), withThreads(1)).moments);
   std::int64_t count = 0;
   for (const auto& [key, moments] : expected) count += moments.count;
   EXPECT_EQ(count, 300001);
   for (const int threads : {1, 2, 0}) {
-    EXPECT_EQ(cellsOf(accumulateScans(PcdScans(one), withThreads(threads)).moments), expected);
-    EXPECT_EQ(cellsOf(accumulateScans(PcdScans(many), withThreads(threads)).moments), expected);
+    EXPECT_EQ(cellsOf(accumulateScans(FileScans(one), withThreads(threads)).moments), expected);
+    EXPECT_EQ(cellsOf(accumulateScans(FileScans(many), withThreads(threads)).moments), expected);
   }
 }
 
@@ -136,7 +136,7 @@ TEST_F(AccumulateScans, InTheFrameOfTheMapMovesNothing) {
   const std::vector<Vector<3>> points = randomCloud<3>(1000, 101);
   MomentGrid<3> expected(0.1);
   expected.addPoints(points);
-  EXPECT_EQ(cellsOf(accumulateScans(PcdScans({write(points, somePose(3))}, ScanFrame::Map), {}).moments),
+  EXPECT_EQ(cellsOf(accumulateScans(FileScans({write(points, somePose(3))}, ScanFrame::Map), {}).moments),
             cellsOf(expected));
 }
 
@@ -187,13 +187,13 @@ TEST_F(AccumulateScans, RefusesRangesThatAreNone) {
   AccumulateOptions options;
   for (const double range : {-1.0, kNaN}) {
     options.max_range = range;
-    EXPECT_THROW(accumulateScans(PcdScans({write({{1, 1, 1}})}), options), std::invalid_argument);
-    EXPECT_THROW(readPoints(PcdScans({write({{1, 1, 1}})}), options), std::invalid_argument);
+    EXPECT_THROW(accumulateScans(FileScans({write({{1, 1, 1}})}), options), std::invalid_argument);
+    EXPECT_THROW(readPoints(FileScans({write({{1, 1, 1}})}), options), std::invalid_argument);
   }
   options = {};
   for (const double resolution : {0.0, -1.0, kNaN, kInfinity}) {
     options.resolution = resolution;
-    EXPECT_THROW(accumulateScans(PcdScans({write({{1, 1, 1}})}), options), std::invalid_argument);
+    EXPECT_THROW(accumulateScans(FileScans({write({{1, 1, 1}})}), options), std::invalid_argument);
   }
 }
 
@@ -202,9 +202,9 @@ TEST_F(AccumulateScans, NamesTheFileOfAPointThatIsTooFarForItsCell) {
     for (const int threads : {1, 2}) {
       Pose turned;  // by 45 degrees about z: 1.7e308 becomes infinite
       turned.rotation = Pose::Rotation(std::cos(M_PI / 8), 0, 0, std::sin(M_PI / 8));
-      const std::vector<PcdScan> scans = {write({{1, 1, 1}}), write({{1, 1, 1}, {far, far, 0}}, turned)};
+      const std::vector<FileScan> scans = {write({{1, 1, 1}}), write({{1, 1, 1}, {far, far, 0}}, turned)};
       try {
-        accumulateScans(PcdScans(scans), withThreads(threads));
+        accumulateScans(FileScans(scans), withThreads(threads));
         ADD_FAILURE() << "took a point at " << far;
       } catch (const std::out_of_range& error) {
         EXPECT_EQ(std::string(error.what()).find(scans[1].path.string() + ": "), 0u) << error.what();
@@ -214,20 +214,20 @@ TEST_F(AccumulateScans, NamesTheFileOfAPointThatIsTooFarForItsCell) {
 }
 
 TEST_F(AccumulateScans, NamesTheFileThatIsDamaged) {
-  const PcdScan good = write(randomCloud<3>(1000, 102));
+  const FileScan good = write(randomCloud<3>(1000, 102));
   const fs::path path =
       directory_.write("damaged.pcd",
                        "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 1\n"
                        "POINTS 2\nDATA ascii\n1 2 3\n4 five 6\n");
   for (const int threads : {1, 2}) {
     try {
-      accumulateScans(PcdScans({good, {path, {}}, good}), withThreads(threads));
+      accumulateScans(FileScans({good, {path, {}}, good}), withThreads(threads));
       ADD_FAILURE() << "took a damaged file";
     } catch (const FileError& error) {
       EXPECT_EQ(std::string(error.what()).find(path.string() + ": line 11"), 0u) << error.what();
     }
   }
-  EXPECT_THROW(accumulateScans(PcdScans({good, {directory_.path() / "missing.pcd", {}}}), {}), FileError);
+  EXPECT_THROW(accumulateScans(FileScans({good, {directory_.path() / "missing.pcd", {}}}), {}), FileError);
 }
 
 TEST_F(AccumulateScans, OfNothingIsNothing) {
@@ -235,16 +235,16 @@ TEST_F(AccumulateScans, OfNothingIsNothing) {
   EXPECT_TRUE(none.moments.empty());
   EXPECT_EQ(none.counts.read, 0);
   EXPECT_EQ(none.moments.resolution(), 0.1);
-  EXPECT_TRUE(accumulateScans(PcdScans({write({})}), {}).moments.empty());
+  EXPECT_TRUE(accumulateScans(FileScans({write({})}), {}).moments.empty());
 }
 
 TEST_F(AccumulateScans, ReportsEveryScanOnce) {
-  std::vector<PcdScan> scans;
+  std::vector<FileScan> scans;
   for (std::uint64_t scan = 0; scan < 9; ++scan) scans.push_back(write(randomCloud<3>(1000, 110 + scan)));
   for (const int threads : {1, 2}) {
     std::vector<AccumulateProgress> reports;
     const AccumulatedScans all =
-        accumulateScans(PcdScans(scans), withThreads(threads),
+        accumulateScans(FileScans(scans), withThreads(threads),
                         [&](const AccumulateProgress& progress) { reports.push_back(progress); });
     ASSERT_EQ(reports.size(), 9u);
     for (std::size_t i = 0; i < 9; ++i) {

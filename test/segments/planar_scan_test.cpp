@@ -7,7 +7,7 @@
 
 #include "gaussmap/core/gaussian.h"
 #include "gaussmap/io/pcd/pcd_writer.h"
-#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/io/scans/file_scans.h"
 #include "io/files/hostile_files.h"
 #include "io/files/temporary_directory.h"
 
@@ -27,7 +27,7 @@ class PlanarScanTest : public testing::Test {
                  ScanFrame frame = ScanFrame::Sensor) {
     const std::filesystem::path path = directory_.path() / "scan.pcd";
     writePcd(path, points, PcdPrecision::Double, pose);
-    return planarScans(PcdScans({{path, pose}}, frame), options).front();
+    return planarScans(FileScans({{path, pose}}, frame), options).front();
   }
   static void expectBeams(const LaserScan& scan, const std::vector<double>& degrees,
                           const std::vector<double>& ranges) {

@@ -70,7 +70,7 @@ void report(const Pcd2mapOptions& options, const Scans& scans, const PointCounts
 }
 
 /// Returns the names of scans that have no point in or beside a coarsest cell of the map.
-std::vector<std::string> farScans(const PcdScans& scans, const GaussianMap<3>& coarse) {
+std::vector<std::string> farScans(const FileScans& scans, const GaussianMap<3>& coarse) {
   constexpr double kFarthest = 2147483000.0;  // cells: beyond, a point has no key
   const int s = coarse.scales() - 1;
   std::vector<std::string> far;
@@ -88,7 +88,7 @@ std::vector<std::string> farScans(const PcdScans& scans, const GaussianMap<3>& c
   return far;
 }
 
-void warnOfFarScans(const PcdScans& scans, const std::string& map) {
+void warnOfFarScans(const FileScans& scans, const std::string& map) {
   const Vector<3> infinite = Vector<3>::Constant(std::numeric_limits<double>::infinity());
   MapReader<3> reader(map);
   const GaussianMap<3> coarse = reader.load({-infinite, infinite}, reader.grid().scales() - 1);
@@ -122,7 +122,7 @@ void updateFromScans(const Pcd2mapOptions& options) {
   const double start = now();
   const MapOptions map = growingMapOptions<3>(options.update);
   const Recorded recorded = recordedIn(loadMetadata(options.update));
-  const PcdScans scans = openScans(options.input, options.budget.refine.threads);
+  const FileScans scans = openScans(options.input, options.budget.refine.threads);
   noteDroppedFields(scans);
   const AccumulatedScans accumulated = accumulate(options, scans, map.resolution);
 

@@ -47,10 +47,10 @@ LaserScans readPcds(const LaserInput& input) {
     if (options.z_min > options.z_max) throw UsageError("--slice: the second height is below the first");
   }
   LaserScans all;
-  const PcdScans scans = openScans(input.scans, 0);
+  const FileScans scans = openScans(input.scans, 0);
   all.scans = planarScans(scans, options);
   warnOfCoordinates(scans, MapOptions().resolution);
-  for (const PcdScan& scan : scans.files()) {
+  for (const FileScan& scan : scans.files()) {
     all.files.push_back(scan.path);
   }
   all.names = detail::scanNames(all.files);

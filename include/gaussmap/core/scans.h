@@ -119,7 +119,7 @@ class GAUSSMAP_API ScanReader {
 
 /// A list of scans with poses: the interface through which the library takes scans.
 ///
-/// Building, online mapping, removal of moving points and evaluation all use this interface. PcdScans holds files,
+/// Building, online mapping, removal of moving points and evaluation all use this interface. FileScans holds files,
 /// MemoryScans holds scans in memory, and a program can add its own implementation.
 /// All functions are thread-safe, because the library reads scans in parallel.
 class GAUSSMAP_API Scans {

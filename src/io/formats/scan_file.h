@@ -10,6 +10,7 @@
 
 #include "gaussmap/core/error.h"
 #include "gaussmap/core/scans.h"
+#include "gaussmap/io/pcd/pcd_reader.h"
 
 namespace gaussmap::detail {
 
@@ -43,6 +44,12 @@ class ScanFile {
   /// those of PCL if there is one: "intensity", "ring", "rgb", "label", "time" [s].
   virtual std::unique_ptr<ScanReader> open(std::size_t scan) const = 0;
 
+  /// Returns where the poses of the scans come from, for messages; empty if the file has no poses.
+  virtual std::string poseSource() const { return ""; }
+  /// Returns true if a reader keeps the points in memory, because the file must be parsed or decompressed.
+  virtual bool keepsPoints() const { return true; }
+  /// Returns the reader of a PCD file; std::nullopt for other kinds.
+  virtual std::optional<PcdReader> pcd() const { return std::nullopt; }
   /// Returns true if the points are in the map frame by the definition of the format, as in LAS.
   virtual bool inMapFrame() const { return false; }
   /// Returns the coordinate reference system as text (WKT), or an empty string.

@@ -92,11 +92,57 @@ void readPoses(std::vector<ScanPose>& scans, const std::vector<ScanKey>& keys, c
   }
   for (const MatchedPoses::Missing& missing : matched.missing) {
     assigned.left_out[missing.scan] = true;
-    assigned.without_pose.push_back(scans[missing.scan].path.string() + ": " + missing.reason);
+    assigned.without_pose.push_back(scans[missing.scan].label() + ": " + missing.reason);
   }
   for (std::size_t i = 0; i < scans.size(); ++i)
     if (matched.poses[i]) scans[i].pose = *matched.poses[i];
   if (!extrinsic) extrinsic = calibrationBeside(file, assigned.warnings);
+}
+
+/// Takes the poses that the files have. Throws FileError if a file has poses, but not of all its scans.
+void posesOfFiles(const std::vector<ScanPose>& scans, bool skip_without_pose, AssignedPoses& assigned) {
+  std::vector<std::string> sources;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    const ScanPose& scan = scans[i];
+    if (!scan.source.empty() && std::find(sources.begin(), sources.end(), scan.source) == sources.end())
+      sources.push_back(scan.source);
+    if (!scan.lacks_pose) continue;
+    if (!skip_without_pose)
+      throw FileError(scan.path, scan.name + " has no pose (" + scan.source +
+                                     "); use --skip-without-pose to leave such scans out, or --poses FILE");
+    assigned.left_out[i] = true;
+    assigned.without_pose.push_back(scan.label());
+  }
+  if (!assigned.without_pose.empty())
+    assigned.warnings.push_back(countText(assigned.without_pose.size(), "scan") + " without a pose left out, first " +
+                                assigned.without_pose.front());
+  for (const std::string& source : sources) assigned.description += (assigned.description.empty() ? "" : "; ") + source;
+  if (sources.empty()) assigned.description = "none in the files";
+}
+
+/// The names and times of the scans.
+std::vector<ScanKey> keysOf(const std::vector<ScanPose>& scans) {
+  std::vector<std::filesystem::path> paths;
+  paths.reserve(scans.size());
+  for (const ScanPose& scan : scans) paths.push_back(scan.path);
+  const std::vector<std::string> names = scanNames(paths);
+  std::vector<ScanKey> keys;
+  keys.reserve(names.size());
+  for (std::size_t i = 0; i < scans.size(); ++i)
+    keys.push_back({scans[i].name.empty() ? names[i] : scans[i].name, scans[i].time});
+  return keys;
+}
+
+/// Sets the times that the files or the names of the scans have.
+void setTimes(const std::vector<ScanKey>& keys, AssignedPoses& assigned) {
+  std::vector<std::string> names;
+  names.reserve(keys.size());
+  for (const ScanKey& key : keys) names.push_back(key.name);
+  const std::vector<Decimal> written = numbersIn(names).times;
+  const std::vector<Instant> times = timesIn(written, unitByMagnitude(largestOf(written)));
+  for (std::size_t i = 0; i < times.size(); ++i) assigned.times[i] = secondsOf(times[i]);
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    if (keys[i].time) assigned.times[i] = secondsOf(*keys[i].time);
 }
 
 }  // namespace
@@ -105,20 +151,11 @@ AssignedPoses assignPoses(std::vector<ScanPose>& scans, const FindScansOptions& 
   AssignedPoses assigned;
   assigned.left_out.resize(scans.size());
   assigned.times.resize(scans.size());
-  std::vector<std::filesystem::path> paths;
-  paths.reserve(scans.size());
-  for (const ScanPose& scan : scans) paths.push_back(scan.path);
-  const std::vector<std::string> names = scanNames(paths);
-  std::vector<ScanKey> keys;
-  keys.reserve(names.size());
-  for (const std::string& name : names) keys.push_back({name, std::nullopt});
-  const std::vector<Decimal> written = numbersIn(names).times;
-  const std::vector<Instant> times = timesIn(written, unitByMagnitude(largestOf(written)));
-  for (std::size_t i = 0; i < times.size(); ++i) assigned.times[i] = secondsOf(times[i]);
-
+  const std::vector<ScanKey> keys = keysOf(scans);
+  setTimes(keys, assigned);
   std::optional<Extrinsic> extrinsic = options.extrinsic;
   if (options.poses.empty())
-    assigned.description = "VIEWPOINT of each scan";
+    posesOfFiles(scans, options.skip_without_pose, assigned);
   else
     readPoses(scans, keys, options, assigned, extrinsic);
   for (const ScanPose& scan : scans) assigned.as_read.push_back(scan.pose);

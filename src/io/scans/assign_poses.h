@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/io/scans/file_scans.h"
 #include "io/scans/pose_checks.h"
 
 namespace gaussmap::detail {

@@ -2,7 +2,7 @@
 // Files with the pose of a sensor on its vehicle.
 #include <algorithm>
 
-#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/io/scans/file_scans.h"
 #include "io/files/mapped_file.h"
 #include "io/files/text.h"
 #include "io/scans/pose_text.h"

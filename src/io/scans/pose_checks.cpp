@@ -31,7 +31,7 @@ using ScanPoses = std::vector<const ScanPose*>;
 ScanPoses scansAt(const Pose& pose, const std::vector<ScanPose>& scans) {
   ScanPoses found;
   for (const ScanPose& scan : scans)
-    if (samePose(scan.pose, pose)) found.push_back(&scan);
+    if (samePose(scan.pose, pose) && !scan.in_map_frame) found.push_back(&scan);
   return found;
 }
 
@@ -44,6 +44,7 @@ bool cloudsDiffer(const ScanPoses& scans) {
 void warnOfIdenticalPoses(const std::vector<ScanPose>& scans, PoseDiagnosis& diagnosis) {
   if (scans.empty()) return;
   const ScanPoses like_first = scansAt(scans.front().pose, scans);
+  if (like_first.empty()) return;  // points in the map frame
   if (like_first.size() == scans.size()) {
     if (cloudsDiffer(like_first))
       diagnosis.warnings.push_back("all " + std::to_string(scans.size()) + " scans have the same pose " +
@@ -54,8 +55,8 @@ void warnOfIdenticalPoses(const std::vector<ScanPose>& scans, PoseDiagnosis& dia
   if (at_identity.size() < 2 || !cloudsDiffer(at_identity)) return;
   diagnosis.warnings.push_back(
       std::to_string(at_identity.size()) + " of " + std::to_string(scans.size()) +
-      " scans have no pose of their own (the identity) but their points differ: " + at_identity[0]->path.string() +
-      ", " + at_identity[1]->path.string() + (at_identity.size() > 2 ? " ... " : ". ") + kWayOut);
+      " scans have no pose of their own (the identity) but their points differ: " + at_identity[0]->label() + ", " +
+      at_identity[1]->label() + (at_identity.size() > 2 ? " ... " : ". ") + kWayOut);
 }
 
 void warnOfFarPoses(const std::vector<ScanPose>& scans, PoseDiagnosis& diagnosis) {
@@ -64,7 +65,7 @@ void warnOfFarPoses(const std::vector<ScanPose>& scans, PoseDiagnosis& diagnosis
     if (scan.pose.translation.norm() > kFarthest) far.push_back(&scan);
   if (far.empty()) return;
   std::ostringstream text;
-  text << far.front()->path.string() << ": the sensor is " << far.front()->pose.translation.norm()
+  text << far.front()->label() << ": the sensor is " << far.front()->pose.translation.norm()
        << " m from the origin of the map";
   if (far.size() > 1) text << ", and " << far.size() - 1 << " more are beyond " << kFarthest << " m";
   text << ". Poses must be in metres.";
@@ -73,17 +74,13 @@ void warnOfFarPoses(const std::vector<ScanPose>& scans, PoseDiagnosis& diagnosis
 
 }  // namespace
 
-ScanPose scanPose(const PcdReader& reader) {
-  return {reader.path(), reader.header().viewpoint, reader.fingerprint()};
-}
-
 void dropUnneededRotations(std::vector<ScanPose>& scans, std::vector<std::string>& warnings) {
   std::size_t dropped = 0;
   std::string first;
   for (ScanPose& scan : scans) {
     const std::string fault = poseFault(scan.pose);
     if (fault.empty()) continue;
-    if (dropped++ == 0) first = scan.path.string() + ": " + fault;
+    if (dropped++ == 0) first = scan.label() + ": " + fault;
     scan.pose.rotation = Pose::Rotation::Identity();
     if (!scan.pose.translation.allFinite()) scan.pose.translation.setZero();
   }

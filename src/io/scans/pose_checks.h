@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,13 +16,17 @@ namespace gaussmap::detail {
 /// Input of the pose checks for one scan; small enough to keep for all scans.
 struct ScanPose {
   std::filesystem::path path;
-  Pose pose;                      ///< as given, with a quaternion that is not normalised
-  std::uint64_t fingerprint = 0;  ///< PcdReader::fingerprint()
-};
+  Pose pose;                                                    ///< as given, with a quaternion that is not normalised
+  std::uint64_t fingerprint = 0;                                ///< differs between different clouds
+  std::string name = "";                                        ///< of the scan in a file with several scans
+  std::optional<std::chrono::nanoseconds> time = std::nullopt;  ///< from the file
+  std::string source = "";                                      ///< where the pose comes from; empty: the file has none
+  bool lacks_pose = false;    ///< true: other scans of the file have poses, but not this one
+  bool in_map_frame = false;  ///< true: no pose is needed
 
-/// Returns the pose in the header of the scan; if the pose comes from elsewhere, the caller replaces `pose`. Reads a
-/// few kilobytes of the file.
-ScanPose scanPose(const PcdReader& reader);
+  /// Returns the name for messages.
+  std::string label() const { return path.string() + (name.empty() ? "" : ": " + name); }
+};
 
 /// For points that are in the map frame: replaces rotations that are not valid by the identity, and positions that are
 /// not finite by the origin, because such points need no pose. Adds one warning if that happens.

@@ -8,7 +8,7 @@
 #include "gaussmap/io/gmap/build_map_file.h"
 #include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/io/pcd/pcd_writer.h"
-#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/io/scans/file_scans.h"
 #include "io/gmap/largest_gains.h"
 #include "io/gmap/map_file_fixture.h"
 
@@ -24,8 +24,8 @@ class BuiltFile : public MapFile {
   fs::path path() const { return directory_.path() / "map.gmap"; }
 
   /// Scans of these points, in the map frame.
-  std::vector<PcdScan> scansOf(const std::vector<Vector<3>>& points, std::size_t scans) {
-    std::vector<PcdScan> sources;
+  std::vector<FileScan> scansOf(const std::vector<Vector<3>>& points, std::size_t scans) {
+    std::vector<FileScan> sources;
     for (std::size_t i = 0; i < scans; ++i) {
       std::vector<Vector<3>> some;
       for (std::size_t j = i; j < points.size(); j += scans) some.push_back(points[j]);  // each is spread over all
@@ -38,13 +38,13 @@ class BuiltFile : public MapFile {
   /// The same bytes as by way of memory?
   void expectSameFile(const std::vector<Vector<3>>& points, const MapOptions& map, double budget,
                       std::size_t max_memory = kMinBuildMemory, int threads = 0) {
-    const std::vector<PcdScan> scans = scansOf(points, 7);
+    const std::vector<FileScan> scans = scansOf(points, 7);
     AccumulateOptions reading;
     reading.resolution = map.resolution;
     const MapMetadata metadata = {{"history", "[]"}};
     const fs::path expected = directory_.path() / "expected.gmap";
     save(expected,
-         refine<3>(build<3>(accumulateScans(PcdScans(scans, ScanFrame::Map), reading).moments, map), PerCell{budget})
+         refine<3>(build<3>(accumulateScans(FileScans(scans, ScanFrame::Map), reading).moments, map), PerCell{budget})
              .map,
          metadata, {true, 3, 0});
     BuildMapFileOptions options;
@@ -53,7 +53,7 @@ class BuiltFile : public MapFile {
     options.refine.threads = reading.threads = threads;
     options.save = {true, 3, threads};
     const BuiltMapFile built = buildMapFile(
-        PcdScans(scans, ScanFrame::Map), reading, map, path(), [&](const PointCounts&) { return metadata; }, options);
+        FileScans(scans, ScanFrame::Map), reading, map, path(), [&](const PointCounts&) { return metadata; }, options);
     EXPECT_EQ(built.counts.accepted, static_cast<std::int64_t>(points.size()));
     const GaussianMapOctree loaded = load(path());
     for (int s = 0; s < loaded.scales(); ++s) {
@@ -97,12 +97,12 @@ TEST_F(BuiltFile, HoldsPointsFarApartAndNone) {
 
 TEST_F(BuiltFile, LeavesNothingBehind) {
   const auto points = randomCloud<3>(100, 153);
-  const std::vector<PcdScan> scans = scansOf(points, 1);
+  const std::vector<FileScan> scans = scansOf(points, 1);
   AccumulateOptions reading;
   const MapOptions map{0.1, 5, 3, 0.0};
   const auto attempt = [&](const AccumulateOptions& how, const BuildMapFileOptions& options, bool refuse = false) {
     buildMapFile(
-        PcdScans(scans, ScanFrame::Map), how, map, path(),
+        FileScans(scans, ScanFrame::Map), how, map, path(),
         [&](const PointCounts&) {
           if (refuse) throw std::runtime_error("no");
           return MapMetadata();

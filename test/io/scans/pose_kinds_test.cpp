@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/io/scans/file_scans.h"
 #include "io/files/temporary_directory.h"
 
 namespace gaussmap {

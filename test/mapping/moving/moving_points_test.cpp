@@ -11,7 +11,7 @@
 #include "gaussmap/core/error.h"
 #include "gaussmap/core/gaussian.h"
 #include "gaussmap/io/pcd/pcd_writer.h"
-#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/io/scans/file_scans.h"
 #include "io/files/temporary_directory.h"
 #include "mesh/shapes.h"
 #include "simulation/lidar.h"
@@ -56,13 +56,13 @@ std::vector<SimulatedScan> driveBy() {
 
 class FindMovingPoints : public testing::Test {
  protected:
-  PcdScan write(const std::vector<Vector<3>>& points, const Pose& pose) {
+  FileScan write(const std::vector<Vector<3>>& points, const Pose& pose) {
     const auto path = directory_.path() / ("scan" + std::to_string(next_++) + ".pcd");
     writePcd(path, points, PcdPrecision::Double, pose);
     return {path, pose};
   }
-  std::vector<PcdScan> write(const std::vector<SimulatedScan>& scans, const Vector3d& offset = {0, 0, 0}) {
-    std::vector<PcdScan> sources;
+  std::vector<FileScan> write(const std::vector<SimulatedScan>& scans, const Vector3d& offset = {0, 0, 0}) {
+    std::vector<FileScan> sources;
     for (const SimulatedScan& scan : scans)
       sources.push_back(write(scan.points, {scan.pose.translation + offset, scan.pose.rotation}));
     return sources;
@@ -116,7 +116,7 @@ TEST_F(FindMovingPoints, TakesTheWholeBoxAndNothingElse) {
   const auto scans = driveBy();
   const auto sources = write(scans);
   for (const double resolution : {0.2, 0.1}) {
-    const MovingPoints moving(std::make_shared<const PcdScans>(sources), withCells(resolution));
+    const MovingPoints moving(std::make_shared<const FileScans>(sources), withCells(resolution));
     const Counts counts = countsOf(scans, flagsOf(moving));
     EXPECT_GT(counts.box, 2000u);
     EXPECT_GT(counts.under, 3000u);
@@ -136,7 +136,7 @@ TEST_F(FindMovingPoints, TellsTheBoxFromTheFloorBySurfacesInTheCellsTheyShare) {
   const auto sources = write(scans);
   MovingPointOptions options = withCells(0.2);
   const auto shareKept = [&] {  // of the box's points in the cells of the floor, but clear of it
-    const Flags flags = flagsOf(MovingPoints(std::make_shared<const PcdScans>(sources), options));
+    const Flags flags = flagsOf(MovingPoints(std::make_shared<const FileScans>(sources), options));
     double kept = 0.0, all = 0.0;
     for (std::size_t i = 0; i < scans.size(); ++i)
       for (std::size_t p = 0; p < flags[i].size(); ++p) {
@@ -157,7 +157,7 @@ TEST_F(FindMovingPoints, KeepsInSharedCellsWhatIsThereBeforeAndAfterTheBox) {
   auto scans = driveBy();
   const Vector3d above_the_floor(1.52, -0.3, kFloor + 0.09);  // behind the side of the box at seconds 3 and 4
   for (SimulatedScan& scan : scans) scan.points.push_back(rounded(above_the_floor - scan.pose.translation));
-  const Flags flags = flagsOf(MovingPoints(std::make_shared<const PcdScans>(write(scans))));
+  const Flags flags = flagsOf(MovingPoints(std::make_shared<const FileScans>(write(scans))));
   for (const std::size_t i : {0u, 1u, 7u, 8u}) EXPECT_FALSE(flags[i].back()) << i;
   for (const std::size_t i : {3u, 4u}) EXPECT_TRUE(flags[i].back()) << i;
 }
@@ -169,7 +169,7 @@ TEST_F(FindMovingPoints, AsksAFloorHowRoughItIs) {
     for (std::size_t p = 0; p < scan.points.size(); ++p)
       if (scan.labels[p] == SurfaceLabel::Static && scan.truth[p].z() < kFloor + 0.01)
         scan.points[p].z() += 0.015 * random.normal();
-  const Counts counts = countsOf(scans, flagsOf(MovingPoints(std::make_shared<const PcdScans>(write(scans)))));
+  const Counts counts = countsOf(scans, flagsOf(MovingPoints(std::make_shared<const FileScans>(write(scans)))));
   EXPECT_LT(counts.under_lost + counts.elsewhere_lost, 6u);  // with two standard deviations 22
   EXPECT_LT(counts.box_kept, counts.box / 20);
 }
@@ -182,15 +182,15 @@ TEST_F(FindMovingPoints, FindsNothingWhereNothingMoves) {
       if (scan.labels[p] == SurfaceLabel::Static) still.push_back(scan.points[p]);
     scan.points = still;
   }
-  for (const std::vector<bool>& flags : flagsOf(MovingPoints(std::make_shared<const PcdScans>(write(scans)))))
+  for (const std::vector<bool>& flags : flagsOf(MovingPoints(std::make_shared<const FileScans>(write(scans)))))
     EXPECT_EQ(std::count(flags.begin(), flags.end(), true), 0);
 }
 
 TEST_F(FindMovingPoints, GivesTheSameFlagsFarFromTheOrigin) {
   const auto scans = driveBy();
   // Cells of a power of two and offsets of whole cells of the coarsest scale: coordinates lose nothing.
-  const Flags near = flagsOf(MovingPoints(std::make_shared<const PcdScans>(write(scans)), withCells(0.25)));
-  EXPECT_EQ(flagsOf(MovingPoints(std::make_shared<const PcdScans>(write(scans, {1e7 + 8.0, -1e7 - 8.0, 9e3})),
+  const Flags near = flagsOf(MovingPoints(std::make_shared<const FileScans>(write(scans)), withCells(0.25)));
+  EXPECT_EQ(flagsOf(MovingPoints(std::make_shared<const FileScans>(write(scans, {1e7 + 8.0, -1e7 - 8.0, 9e3})),
                                  withCells(0.25))),
             near);
   EXPECT_LT(countsOf(scans, near).box_kept, 30u);
@@ -201,17 +201,17 @@ TEST_F(FindMovingPoints, GivesTheSameFlagsForAnyNumberOfThreads) {
   const auto sources = write(scans);
   MovingPointOptions options;
   options.evidence.threads = 1;
-  const Flags one = flagsOf(MovingPoints(std::make_shared<const PcdScans>(sources), options));
+  const Flags one = flagsOf(MovingPoints(std::make_shared<const FileScans>(sources), options));
   for (const int threads : {2, 0}) {
     options.evidence.threads = threads;
-    EXPECT_EQ(flagsOf(MovingPoints(std::make_shared<const PcdScans>(sources), options)), one);
+    EXPECT_EQ(flagsOf(MovingPoints(std::make_shared<const FileScans>(sources), options)), one);
   }
 }
 
 TEST_F(FindMovingPoints, IsNotDisturbedByScansOfNoUse) {
   const auto scans = driveBy();
-  std::vector<PcdScan> sources = write(scans);
-  const Flags clean = flagsOf(MovingPoints(std::make_shared<const PcdScans>(sources)));
+  std::vector<FileScan> sources = write(scans);
+  const Flags clean = flagsOf(MovingPoints(std::make_shared<const FileScans>(sources)));
   const Pose aside{{-3, 0, 1.5}, Pose::Rotation::Identity()};
   sources.push_back(write({}, aside));
   sources.push_back(write({{4, 0, 0}}, aside));
@@ -220,7 +220,7 @@ TEST_F(FindMovingPoints, IsNotDisturbedByScansOfNoUse) {
   const std::size_t in_the_air = sources.size();  // where others see that nothing is
   sources.push_back(write(std::vector<Vector<3>>(1000, {1e-9, -1e-9, 1e-9}), aside));  // all but at the sensor
   sources.push_back(write(std::vector<Vector<3>>(1000, {2, 3, 1}), aside));
-  const MovingPoints moving(std::make_shared<const PcdScans>(sources));
+  const MovingPoints moving(std::make_shared<const FileScans>(sources));
   Flags flags = flagsOf(moving);
   const std::size_t sizes[] = {0, 1, 1000, 1000, 1000, 1000};
   EXPECT_EQ(moving.counts().non_finite, 1000);
@@ -236,7 +236,7 @@ TEST_F(FindMovingPoints, IsNotDisturbedByScansOfNoUse) {
 
 TEST_F(FindMovingPoints, KeepsWhatAScanFromInsideAWallCannotSee) {
   const auto scans = driveBy();
-  std::vector<PcdScan> sources = write(scans);
+  std::vector<FileScan> sources = write(scans);
   LidarOptions lidar;
   lidar.rings = 48;
   lidar.columns = 720;
@@ -245,7 +245,7 @@ TEST_F(FindMovingPoints, KeepsWhatAScanFromInsideAWallCannotSee) {
     EXPECT_FALSE(scan.points.empty());
     sources.push_back(write(scan.points, scan.pose));
   }
-  Flags flags = flagsOf(MovingPoints(std::make_shared<const PcdScans>(sources)));
+  Flags flags = flagsOf(MovingPoints(std::make_shared<const FileScans>(sources)));
   EXPECT_EQ(std::count(flags[9].begin(), flags[9].end(), true), 0);
   flags.resize(9);
   const Counts counts = countsOf(scans, flags);
@@ -257,7 +257,7 @@ TEST_F(FindMovingPoints, LeavesOutPointsBeyondTheMaximumRange) {
   const auto scans = driveBy();
   MovingPointOptions options;
   options.evidence.max_range = 5.0;
-  const MovingPoints moving(std::make_shared<const PcdScans>(write(scans)), options);
+  const MovingPoints moving(std::make_shared<const FileScans>(write(scans)), options);
   EXPECT_GT(moving.counts().beyond_range, 0);
   std::size_t found = 0;
   for (std::size_t i = 0; i < scans.size(); ++i) {
@@ -277,14 +277,14 @@ TEST_F(FindMovingPoints, NeedsNoScans) {
   EXPECT_TRUE(none.map().empty());
   EXPECT_THROW(none.inScan(0), std::out_of_range);
   const auto one = write({driveBy().front()});
-  for (const std::vector<bool>& flags : flagsOf(MovingPoints(std::make_shared<const PcdScans>(one))))
+  for (const std::vector<bool>& flags : flagsOf(MovingPoints(std::make_shared<const FileScans>(one))))
     EXPECT_EQ(std::count(flags.begin(), flags.end(), true), 0);
 }
 
 TEST_F(FindMovingPoints, TellsHowFarEachStepIs) {
   const auto sources = write(driveBy());
   std::vector<std::pair<MovingPointStep, std::size_t>> reports;
-  const MovingPoints moving(std::make_shared<const PcdScans>(sources), {},
+  const MovingPoints moving(std::make_shared<const FileScans>(sources), {},
                             [&](MovingPointStep step, std::size_t done) { reports.emplace_back(step, done); });
   EXPECT_TRUE(std::is_sorted(reports.begin(), reports.end()));
   for (const MovingPointStep step : {MovingPointStep::Counting, MovingPointStep::Looking, MovingPointStep::Sharing})

@@ -10,7 +10,7 @@
 #include "core/unreadable_scans.h"
 #include "gaussmap/core/error.h"
 #include "gaussmap/io/pcd/pcd_writer.h"
-#include "gaussmap/io/scans/pcd_scans.h"
+#include "gaussmap/io/scans/file_scans.h"
 #include "gaussmap/mapping/build.h"
 #include "io/files/temporary_directory.h"
 #include "mesh/shapes.h"
@@ -48,13 +48,13 @@ std::vector<SimulatedScan> roomScans() {
 
 class GatherEvidence : public testing::Test {
  protected:
-  PcdScan write(const std::vector<Vector<3>>& points, const Pose& pose) {
+  FileScan write(const std::vector<Vector<3>>& points, const Pose& pose) {
     const auto path = directory_.path() / ("scan" + std::to_string(next_++) + ".pcd");
     writePcd(path, points, PcdPrecision::Double, pose);
     return {path, pose};
   }
-  std::vector<PcdScan> write(const std::vector<SimulatedScan>& scans) {
-    std::vector<PcdScan> sources;
+  std::vector<FileScan> write(const std::vector<SimulatedScan>& scans) {
+    std::vector<FileScan> sources;
     for (const SimulatedScan& scan : scans) sources.push_back(write(scan.points, scan.pose));
     return sources;
   }
@@ -63,7 +63,7 @@ class GatherEvidence : public testing::Test {
   int next_ = 0;
 };
 
-GaussianMap<3> mapOf(const PcdScans& scans, const ScanEvidenceOptions& options = {}) {
+GaussianMap<3> mapOf(const FileScans& scans, const ScanEvidenceOptions& options = {}) {
   return build<3>(accumulateScans(scans, {0.25, options.max_range, 1}).moments, MapOptions{0.25, 6, 3, 0.0});
 }
 
@@ -104,8 +104,8 @@ void expectThatTheBoxHasGone(const GaussianMap<3>& map, const ScanEvidence& evid
 TEST_F(GatherEvidence, CountsWhatHasGoneAsMissedAndTheWallBehindAsHit) {
   const auto scans = roomScans();
   const auto sources = write(scans);
-  const GaussianMap<3> map = mapOf(PcdScans(sources));
-  const ScanEvidence evidence = gatherEvidence(map, PcdScans(sources));
+  const GaussianMap<3> map = mapOf(FileScans(sources));
+  const ScanEvidence evidence = gatherEvidence(map, FileScans(sources));
   expectThatTheBoxHasGone(map, evidence, scans);
   EXPECT_LE(evidence.cells_visited, 2 * map.cellCount(0));
   EXPECT_GT(evidence.cells_visited, 0u);
@@ -114,13 +114,13 @@ TEST_F(GatherEvidence, CountsWhatHasGoneAsMissedAndTheWallBehindAsHit) {
 
 TEST_F(GatherEvidence, TakesPointsInTheFrameOfTheMap) {
   const auto scans = roomScans();
-  std::vector<PcdScan> sources;
+  std::vector<FileScan> sources;
   for (const SimulatedScan& scan : scans) {
     std::vector<Vector<3>> in_map;
     for (const Vector3d& point : scan.points) in_map.push_back(scan.pose * point);
     sources.push_back(write(in_map, scan.pose));
   }
-  const PcdScans files(sources, ScanFrame::Map);
+  const FileScans files(sources, ScanFrame::Map);
   const GaussianMap<3> map = mapOf(files);
   expectThatTheBoxHasGone(map, gatherEvidence(map, files), scans);
 }
@@ -128,14 +128,14 @@ TEST_F(GatherEvidence, TakesPointsInTheFrameOfTheMap) {
 TEST_F(GatherEvidence, LooksThroughTheProjectionThatIsGiven) {
   const auto scans = roomScans();
   const auto sources = write(scans);
-  const GaussianMap<3> map = mapOf(PcdScans(sources));
+  const GaussianMap<3> map = mapOf(FileScans(sources));
   ScanEvidenceOptions options;
   options.projection = test::lidar(48, -40.85, 40.85, 360);
-  expectThatTheBoxHasGone(map, gatherEvidence(map, PcdScans(sources), options), scans);
+  expectThatTheBoxHasGone(map, gatherEvidence(map, FileScans(sources), options), scans);
 
   options.projection = test::lidar(48, -80, -60, 360);  // looks elsewhere
-  const ScanEvidence blind = gatherEvidence(map, PcdScans(sources), options);
-  const ScanEvidence found = gatherEvidence(map, PcdScans(sources));
+  const ScanEvidence blind = gatherEvidence(map, FileScans(sources), options);
+  const ScanEvidence found = gatherEvidence(map, FileScans(sources));
   for (std::size_t cell = 0; cell < map.cellCount(0); ++cell) {
     ASSERT_EQ(blind.cells[cell].hits, found.cells[cell].hits);
     ASSERT_EQ(blind.cells[cell].misses, 0u);
@@ -144,7 +144,7 @@ TEST_F(GatherEvidence, LooksThroughTheProjectionThatIsGiven) {
 
 TEST_F(GatherEvidence, TakesAPointInTheCellForAHitWhateverOtherBeamsDo) {
   // A wall 5.05 m away, then 5.95 m: in the same cells of 1 m, but 0.9 m behind the mean of many earlier points.
-  std::vector<PcdScan> sources;
+  std::vector<FileScan> sources;
   for (const double distance : {5.05, 5.05, 5.05, 5.05, 5.05, 5.05, 5.05, 5.05, 5.05, 5.95}) {
     std::vector<Vector<3>> points;
     for (double y = -2.0; y < 2.0; y += 0.05)
@@ -152,11 +152,11 @@ TEST_F(GatherEvidence, TakesAPointInTheCellForAHitWhateverOtherBeamsDo) {
     sources.push_back(write(points, {}));
   }
   const GaussianMap<3> map =
-      build<3>(accumulateScans(PcdScans(sources), {1.0, 100.0, 1}).moments, MapOptions{1.0, 6, 3, 0.0});
+      build<3>(accumulateScans(FileScans(sources), {1.0, 100.0, 1}).moments, MapOptions{1.0, 6, 3, 0.0});
   ScanEvidenceOptions options;
   options.projection = test::lidar(40, -25, 25, 360);
-  const ScanEvidence evidence = gatherEvidence(map, PcdScans(sources), options);
-  const RangeImage last(*options.projection, readPoints(PcdScans({sources.back()}), {}));
+  const ScanEvidence evidence = gatherEvidence(map, FileScans(sources), options);
+  const RangeImage last(*options.projection, readPoints(FileScans({sources.back()}), {}));
   std::size_t decided = 0;
   for (std::size_t cell = 0; cell < map.cellCount(0); ++cell) {
     if (evidence.cells[cell].last_hit != 9) continue;
@@ -168,10 +168,10 @@ TEST_F(GatherEvidence, TakesAPointInTheCellForAHitWhateverOtherBeamsDo) {
 
 TEST_F(GatherEvidence, AsksForTheToleranceThatIsGiven) {
   const auto sources = write(roomScans());
-  const GaussianMap<3> map = mapOf(PcdScans(sources));
+  const GaussianMap<3> map = mapOf(FileScans(sources));
   ScanEvidenceOptions options;
   options.visibility.tolerance = 8.0;  // no wall is so far behind the box
-  for (const Evidence& said : gatherEvidence(map, PcdScans(sources), options).cells) ASSERT_EQ(said.misses, 0u);
+  for (const Evidence& said : gatherEvidence(map, FileScans(sources), options).cells) ASSERT_EQ(said.misses, 0u);
 }
 
 TEST_F(GatherEvidence, FreesTheWayOfBeamsThatEndBeyondTheMaximumRange) {
@@ -179,18 +179,18 @@ TEST_F(GatherEvidence, FreesTheWayOfBeamsThatEndBeyondTheMaximumRange) {
   const auto sources = write(scans);
   ScanEvidenceOptions options;
   options.max_range = 5.5;  // the wall behind the box is 8 m away
-  const GaussianMap<3> map = mapOf(PcdScans(sources), options);
-  EXPECT_LT(map.cellCount(0), mapOf(PcdScans(sources)).cellCount(0));
+  const GaussianMap<3> map = mapOf(FileScans(sources), options);
+  EXPECT_LT(map.cellCount(0), mapOf(FileScans(sources)).cellCount(0));
   const auto in_box = cellsOf(map, scans[0], SurfaceLabel::Moving);
   EXPECT_GT(in_box.size(), 20u);
-  const ScanEvidence evidence = gatherEvidence(map, PcdScans(sources), options);
+  const ScanEvidence evidence = gatherEvidence(map, FileScans(sources), options);
   for (std::size_t cell = 0; cell < map.cellCount(0); ++cell) {
     ASSERT_GE(evidence.cells[cell].hits, 1u);
     ASSERT_EQ(evidence.cells[cell].misses, in_box.count(cell));
   }
 
   options.max_range = 0.0;  // no point hits anything
-  for (const Evidence& said : gatherEvidence(map, PcdScans(sources), options).cells) ASSERT_EQ(said.hits, 0u);
+  for (const Evidence& said : gatherEvidence(map, FileScans(sources), options).cells) ASSERT_EQ(said.hits, 0u);
 }
 
 TEST_F(GatherEvidence, TakesNoReturnForFreeSpaceOnlyIfAsked) {  // the box under the open sky, then nothing
@@ -203,11 +203,11 @@ TEST_F(GatherEvidence, TakesNoReturnForFreeSpaceOnlyIfAsked) {  // the box under
   for (const double time : {0.0, 1.0}) scans.push_back(simulateScan(sky, pose(-2, 1.5, 1.7), lidar, 1, time));
   ASSERT_TRUE(scans[1].points.empty());
   const auto sources = write(scans);
-  const GaussianMap<3> map = mapOf(PcdScans(sources));
+  const GaussianMap<3> map = mapOf(FileScans(sources));
   ScanEvidenceOptions options;
   const auto misses = [&] {
     std::uint32_t sum = 0;
-    for (const Evidence& said : gatherEvidence(map, PcdScans(sources), options).cells) {
+    for (const Evidence& said : gatherEvidence(map, FileScans(sources), options).cells) {
       EXPECT_EQ(said.hits, 1u);
       EXPECT_LE(said.misses, 1u);
       sum += said.misses;
@@ -229,7 +229,7 @@ TEST_F(GatherEvidence, TakesOrganisedCloudsOfDepthCameras) {
   // A wall 5 m before the camera; in the first image a board 2 m before it; a tenth of the pixels without depth.
   const PlanarProjection camera = test::camera();
   Random random(3);
-  std::vector<PcdScan> sources;
+  std::vector<FileScan> sources;
   for (const bool board : {true, false}) {
     std::vector<float> numbers;
     for (int row = 0; row < camera.rows; ++row)
@@ -247,8 +247,8 @@ TEST_F(GatherEvidence, TakesOrganisedCloudsOfDepthCameras) {
              Pose{}, std::size_t(camera.columns));
     sources.push_back({path, {}});
   }
-  const GaussianMap<3> map = mapOf(PcdScans(sources));
-  const ScanEvidence evidence = gatherEvidence(map, PcdScans(sources));
+  const GaussianMap<3> map = mapOf(FileScans(sources));
+  const ScanEvidence evidence = gatherEvidence(map, FileScans(sources));
   std::size_t of_board = 0;
   for (std::size_t cell = 0; cell < map.cellCount(0); ++cell) {
     const bool is_board = map.gaussian(cell, 0).mean.z() < 3.0;
@@ -267,12 +267,12 @@ TEST_F(GatherEvidence, GivesTheSameForAnyNumberOfThreads) {
   for (int i = 0; i < 35; ++i)  // more than are in memory at a time
     scans.push_back(simulateScan(room, pose(-3 + 0.1 * i, 0.5, 1.5), lidar, std::uint64_t(i), i));
   const auto sources = write(scans);
-  const GaussianMap<3> map = mapOf(PcdScans(sources));
+  const GaussianMap<3> map = mapOf(FileScans(sources));
   ScanEvidenceOptions options;
   options.threads = 1;
   std::vector<std::size_t> done;
   const ScanEvidence one =
-      gatherEvidence(map, PcdScans(sources), options, [&](std::size_t count) { done.push_back(count); });
+      gatherEvidence(map, FileScans(sources), options, [&](std::size_t count) { done.push_back(count); });
   EXPECT_TRUE(std::is_sorted(done.begin(), done.end()));
   EXPECT_EQ(done.back(), 35u);
   for (std::uint32_t i = 0; i < 35; ++i)
@@ -284,7 +284,7 @@ TEST_F(GatherEvidence, GivesTheSameForAnyNumberOfThreads) {
   std::uint32_t misses = 0;
   for (const int threads : {2, 0}) {
     options.threads = threads;
-    const ScanEvidence many = gatherEvidence(map, PcdScans(sources), options);
+    const ScanEvidence many = gatherEvidence(map, FileScans(sources), options);
     EXPECT_EQ(many.cells_tested, one.cells_tested);
     EXPECT_EQ(many.cells_visited, one.cells_visited);
     for (std::size_t cell = 0; cell < map.cellCount(0); ++cell) {
@@ -302,10 +302,10 @@ TEST_F(GatherEvidence, GivesTheSameForAnyNumberOfThreads) {
 TEST_F(GatherEvidence, TakesEmptyMapsAndScansOfNoUse) {
   EXPECT_TRUE(gatherEvidence(GaussianMap<3>{}, MemoryScans()).cells.empty());
   const GaussianMap<3> map = build<3>(std::vector<Vector<3>>{{1, 0, 0}, {3, 1, 0}}, MapOptions{0.25, 6, 3, 0.0});
-  const std::vector<PcdScan> scans = {write({}, {}), write({{1, 0, 0}}, {}),
-                                      write({{kNaN, kNaN, kNaN}, {0, 0, 0}, {kNaN, 0, 1}}, {}),
-                                      write(std::vector<Vector<3>>(5, {1, 0, 0}), {})};
-  const ScanEvidence evidence = gatherEvidence(map, PcdScans(scans));
+  const std::vector<FileScan> scans = {write({}, {}), write({{1, 0, 0}}, {}),
+                                       write({{kNaN, kNaN, kNaN}, {0, 0, 0}, {kNaN, 0, 1}}, {}),
+                                       write(std::vector<Vector<3>>(5, {1, 0, 0}), {})};
+  const ScanEvidence evidence = gatherEvidence(map, FileScans(scans));
   const std::size_t near = *map.find(map.grid().keyOf({1, 0, 0}), 0);
   EXPECT_EQ(evidence.cells[near].hits, 2u);
   EXPECT_EQ(evidence.cells[near].first_hit, 1u);
@@ -317,9 +317,9 @@ TEST_F(GatherEvidence, TakesEmptyMapsAndScansOfNoUse) {
 TEST_F(GatherEvidence, NamesTheFileThatIsNotUsable) {
   const GaussianMap<3> map(MapOptions{0.25, 6, 3, 0.0});
   EXPECT_THROW(gatherEvidence(map, test::UnreadableScans()), FileError);
-  const PcdScan far = write({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, pose(1e12, 0, 0));
+  const FileScan far = write({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, pose(1e12, 0, 0));
   try {
-    gatherEvidence(map, PcdScans({far}));
+    gatherEvidence(map, FileScans({far}));
     FAIL();
   } catch (const std::out_of_range& error) {
     EXPECT_NE(std::string(error.what()).find(far.path.string()), std::string::npos) << error.what();

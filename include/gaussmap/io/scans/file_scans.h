@@ -15,46 +15,60 @@
 
 namespace gaussmap {
 
+struct FindScansOptions;
+struct FoundScans;
+
 namespace detail {
 class CoordinateSamples;
 class KeptReaders;
+class ScanFiles;
 }  // namespace detail
 
-/// A PCD file and the pose of its sensor.
-struct PcdScan {
+/// A scan in a file, and the pose of its sensor.
+struct FileScan {
   std::filesystem::path path;                 ///< the file
   Pose pose;                                  ///< sensor frame to map frame, unit quaternion
   std::optional<double> time = std::nullopt;  ///< time of the scan [s]; std::nullopt if unknown
+  std::size_t index = 0;                      ///< of the scan in a file with several scans
+  std::string name = "";                      ///< of the scan in a file with several scans, for messages
 };
 
-/// PCD files as scans.
+/// What the content of some files does not say.
+struct FileOptions {
+  std::string fields;  ///< names of the columns of a text or of raw floats: "x y z intensity"; empty: recognised
+  std::string topic;   ///< topic of the scans in a recording; empty: the only one
+  std::string frame;   ///< frame of a recording that becomes the map frame; empty: map, or else odom
+};
+
+/// Scans in files of any kind that gaussmap reads. The kind of a file follows from its content.
 ///
-/// Each file is opened once. The points of an ascii or compressed file stay in memory only as long as their reader
-/// exists. The values of the points are the other fields of the file, for example "intensity". Elements of fields with
-/// several numbers have an index: "normal[2]".
-class GAUSSMAP_API PcdScans : public Scans {
+/// Each file is opened once. The points of a file that must be parsed or decompressed stay in memory only as long as
+/// their reader exists. The values of the points are the other fields of the file, for example "intensity". Elements of
+/// fields with several numbers have an index: "normal[2]".
+class GAUSSMAP_API FileScans : public Scans {
  public:
-  /// Opens the files and checks their headers. `opened` can hold readers of the first files if they are already open.
-  /// Throws FileError if a file is not usable.
-  explicit PcdScans(std::vector<PcdScan> scans, ScanFrame frame = ScanFrame::Sensor,
-                    std::vector<PcdReader> opened = {});
-  ~PcdScans() override;
-  PcdScans(PcdScans&&) noexcept;
-  PcdScans& operator=(PcdScans&&) noexcept;
+  /// Opens the files and checks their headers. Throws FileError if a file is not usable or has no scan with this index.
+  explicit FileScans(std::vector<FileScan> scans, ScanFrame frame = ScanFrame::Sensor, const FileOptions& options = {});
+  ~FileScans() override;
+  FileScans(FileScans&&) noexcept;
+  FileScans& operator=(FileScans&&) noexcept;
 
   std::size_t size() const override { return scans_.size(); }
   ScanInfo info(std::size_t index) const override;
   ScanFrame frame() const override { return frame_; }
   std::unique_ptr<ScanReader> open(std::size_t index) const override;
 
-  /// Returns the list of files.
-  const std::vector<PcdScan>& files() const { return scans_; }
-  /// Returns a reader of a file, for access to its header, records and columns. Throws like open().
-  PcdReader reader(std::size_t index) const;
+  /// Returns the list of scans.
+  const std::vector<FileScan>& files() const { return scans_; }
+  /// Returns the kind of the file of a scan, for messages: "PCD binary", "LAS 1.2, point format 3". Throws like open().
+  std::string kind(std::size_t index) const;
+  /// Returns a reader of the file of a scan if it is a PCD file, for access to its header, records and columns;
+  /// std::nullopt for other files. Throws like open().
+  std::optional<PcdReader> pcd(std::size_t index) const;
 
-  /// Keeps the points of ascii and compressed files that are opened from now on, until the same file is opened again,
-  /// but at most this many bytes in all. So a look at some scans before all scans are read costs little. 0: keeps no
-  /// more.
+  /// From now on, keeps the points of each opened scan whose file must be parsed or decompressed, until the scan is
+  /// opened again. The kept points take at most `bytes`. A program can then look at some scans before it reads all of
+  /// them, at little cost. 0: keeps no further points.
   void keepForNextOpen(std::size_t bytes);
 
   /// Returns warnings about the coordinates of the points that were read so far: floats that are too coarse for cells
@@ -64,8 +78,12 @@ class GAUSSMAP_API PcdScans : public Scans {
   std::vector<Eigen::Vector3d> sample(std::size_t index) const;
 
  private:
-  std::vector<PcdScan> scans_;
-  std::vector<PcdReader> opened_;  // of the first scans: the number of memory maps per process is limited
+  friend FoundScans findScans(const std::vector<std::filesystem::path>&, const FindScansOptions&);
+  FileScans(std::vector<FileScan> scans, ScanFrame frame, std::shared_ptr<detail::ScanFiles> files);
+
+  std::vector<FileScan> scans_;
+  std::vector<std::size_t> file_of_;  // per scan: the number of its file in files_
+  std::shared_ptr<detail::ScanFiles> files_;
   ScanFrame frame_;
   std::shared_ptr<detail::CoordinateSamples> samples_;  // of the points that were read
   std::shared_ptr<detail::KeptReaders> kept_;
@@ -100,11 +118,12 @@ struct FindScansOptions {
   std::optional<Extrinsic> extrinsic =
       std::nullopt;                     ///< std::nullopt: calib.txt beside a KITTI pose file, if it exists
   ScanFrame frame = ScanFrame::Sensor;  ///< frame of the points in the files
+  FileOptions files;                    ///< what the content of some files does not say
 };
 
 /// Scans with poses, and what was found out about them.
 struct FoundScans {
-  PcdScans scans;                         ///< the scans
+  FileScans scans;                        ///< the scans
   std::vector<std::string> warnings;      ///< one or two sentences each, with file names and what to do
   std::string poses;                      ///< where the poses come from and how they were matched, one sentence
   std::vector<std::string> without_pose;  ///< the scans that were left out, with the reason

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "gaussmap/io/scans/file_scans.h"
+#include "io/formats/scan_file.h"
+#include "io/scans/coordinate_checks.h"
+
+namespace gaussmap::detail {
+
+/// The files of a list of scans. The number of files that stay open is limited; the others are opened again when they
+/// are needed.
+class ScanFiles {
+ public:
+  explicit ScanFiles(FileOptions options) : options_(std::move(options)) {}
+
+  struct Added {
+    std::size_t number;
+    std::shared_ptr<const ScanFile> file;
+  };
+  /// Opens a file, if it is not open yet. Throws FileError. Not thread-safe.
+  Added add(const std::filesystem::path& path);
+  /// Returns a file by its number. Thread-safe. Throws FileError if the file has to be opened again and is gone.
+  std::shared_ptr<const ScanFile> file(std::size_t number) const;
+
+ private:
+  FileOptions options_;
+  std::vector<std::filesystem::path> paths_;
+  std::vector<std::shared_ptr<const ScanFile>> open_;  // the first files
+  std::map<std::filesystem::path, std::size_t> numbers_;
+};
+
+/// Readers that have their points in memory, until they are taken. Thread-safe.
+class KeptReaders {
+ public:
+  using Reader = std::shared_ptr<const ScanReader>;
+
+  /// Allows that the points of further readers take this many bytes.
+  void allow(std::size_t bytes);
+  /// Returns the reader of a scan, which is not kept any more; nullptr if there is none.
+  Reader take(std::size_t scan);
+  /// Keeps the reader of a scan whose points take this many bytes, if that is allowed.
+  void keep(std::size_t scan, const Reader& reader, std::size_t bytes);
+
+ private:
+  std::mutex mutex_;
+  std::size_t budget_ = 0;
+  std::map<std::size_t, Reader> readers_;
+};
+
+}  // namespace gaussmap::detail
