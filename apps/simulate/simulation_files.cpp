@@ -26,7 +26,7 @@ std::vector<std::filesystem::path> scanPaths(const std::filesystem::path& folder
 
 void refuseOtherScans(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& own) {
   for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (isScanName(entry.path().filename()) && std::find(own.begin(), own.end(), entry.path()) == own.end())
+    if (!scanExtension(entry.path().filename()).empty() && std::find(own.begin(), own.end(), entry.path()) == own.end())
       throw UsageError(entry.path().string() + " would lie among the new scans; remove it or choose another directory");
 }
 

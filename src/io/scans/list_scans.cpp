@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which files a list of inputs means.
 #include <algorithm>
+#include <map>
 #include <system_error>
 
 #include "gaussmap/io/scans/file_scans.h"
@@ -20,24 +21,49 @@ std::string hintOfSubfolders(const std::filesystem::path& directory) {
     if (!folder->is_directory(ignored)) continue;
     for (std::filesystem::directory_iterator file(folder->path(), ignored), last; !ignored && file != last;
          file.increment(ignored))
-      if (isScanName(file->path().filename()))
+      if (!scanExtension(file->path().filename()).empty())
         return ", but in its subdirectories: name them, for example " + (directory / "*").string() + "/" +
                file->path().filename().string();
   }
   return "";
 }
 
-std::vector<std::filesystem::path> scansIn(const std::filesystem::path& directory) {
-  std::vector<std::filesystem::path> scans;
+/// The files of scans in a directory, per extension.
+using FilesPerKind = std::map<std::string, std::vector<std::filesystem::path>>;
+
+FilesPerKind filesIn(const std::filesystem::path& directory) {
+  FilesPerKind files;
   std::error_code error;
   std::filesystem::directory_iterator entry(directory, error);
   for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
     // A broken link or a pipe stays in the list: the reader reports what is wrong with it.
     std::error_code ignored;
-    if (isScanName(entry->path().filename()) && !entry->is_directory(ignored)) scans.push_back(entry->path());
+    const std::string extension = scanExtension(entry->path().filename());
+    if (!extension.empty() && !entry->is_directory(ignored)) files[extension].push_back(entry->path());
   }
   if (error) throw FileError(directory, "cannot be listed: " + error.message());
-  if (scans.empty()) throw FileError(directory, "no .pcd file in this directory" + hintOfSubfolders(directory));
+  return files;
+}
+
+/// ".las (3 files), .ply (1 file)"
+std::string countsOf(const FilesPerKind& files) {
+  std::string text;
+  for (const auto& [extension, paths] : files)
+    text += (text.empty() ? "" : ", ") + extension + " (" + std::to_string(paths.size()) +
+            (paths.size() == 1 ? " file)" : " files)");
+  return text;
+}
+
+/// Returns the files of one kind. PCD files come before all others.
+std::vector<std::filesystem::path> scansIn(const std::filesystem::path& directory) {
+  FilesPerKind files = filesIn(directory);
+  if (files.empty()) throw FileError(directory, "no file of scans in this directory" + hintOfSubfolders(directory));
+  const auto pcds = files.find(".pcd");
+  if (pcds == files.end() && files.size() > 1)
+    throw FileError(directory, "holds files of several kinds: " + countsOf(files) +
+                                   "; name those to read, for example " +
+                                   (directory / ("*" + files.begin()->first)).string());
+  std::vector<std::filesystem::path> scans = std::move((pcds != files.end() ? pcds : files.begin())->second);
   std::sort(scans.begin(), scans.end(),
             [](const auto& a, const auto& b) { return naturalLess(a.filename().string(), b.filename().string()); });
   return scans;

@@ -33,6 +33,14 @@ std::filesystem::path withoutGz(const std::filesystem::path& name) {
   return lowerExtension(name) == ".gz" && lowerExtension(name.stem()) == ".pcd" ? name.stem() : name;
 }
 
+/// Returns the name of a copy in PCD format.
+std::filesystem::path copyName(const std::filesystem::path& scan) {
+  std::filesystem::path name = withoutGz(scan.filename());
+  if (const std::string extension = scanExtension(name); !extension.empty() && extension != ".pcd")
+    name.replace_extension(".pcd");
+  return name;
+}
+
 /// Returns the name of the folder of a scan; empty if it has none.
 std::filesystem::path folderName(const std::filesystem::path& scan) {
   const std::filesystem::path folder = scan.lexically_normal().parent_path().filename();
@@ -41,22 +49,26 @@ std::filesystem::path folderName(const std::filesystem::path& scan) {
 
 }  // namespace
 
-bool isScanName(const std::filesystem::path& name) {
-  return lowerExtension(withoutGz(name)) == ".pcd" && name.string().front() != '.';
+std::string scanExtension(const std::filesystem::path& name) {
+  static const std::set<std::string> kExtensions = {".pcd", ".ply", ".las", ".laz",  ".e57", ".pts",
+                                                    ".ptx", ".xyz", ".bin", ".mcap", ".db3", ".bag"};
+  if (name.empty() || name.string().front() == '.') return "";
+  const std::string extension = lowerExtension(withoutGz(name));
+  return kExtensions.count(extension) > 0 ? extension : "";
 }
 
 std::string scanStem(const std::filesystem::path& scan) {
   const std::filesystem::path name = withoutGz(scan.filename());
-  return lowerExtension(name) == ".pcd" ? name.stem().string() : name.string();
+  return scanExtension(name).empty() ? name.string() : name.stem().string();
 }
 
 std::vector<std::filesystem::path> scanCopies(const std::vector<std::filesystem::path>& scans) {
   std::set<std::filesystem::path> names;
-  for (const std::filesystem::path& scan : scans) names.insert(withoutGz(scan.filename()));
+  for (const std::filesystem::path& scan : scans) names.insert(copyName(scan));
   std::vector<std::filesystem::path> copies;
   copies.reserve(scans.size());
   for (const std::filesystem::path& scan : scans) {
-    const std::filesystem::path name = withoutGz(scan.filename()), folder = folderName(scan);
+    const std::filesystem::path name = copyName(scan), folder = folderName(scan);
     copies.push_back(names.size() == scans.size() || folder.empty() ? name : folder / name);
   }
   return copies;

@@ -9,14 +9,16 @@
 
 namespace gaussmap::detail {
 
-/// Returns true if listScans() treats a file with this name in a directory as a scan.
-GAUSSMAP_API bool isScanName(const std::filesystem::path& name);
+/// Returns the extension of a file of scans in lower case: ".pcd" (also for .pcd.gz), ".ply", ".las" and so on. Returns
+/// "" if listScans() does not treat a file with this name in a directory as scans. Tables such as .csv and .txt are not
+/// listed, because they often hold something else.
+GAUSSMAP_API std::string scanExtension(const std::filesystem::path& name);
 
-/// Returns the name of a scan without folders, without .gz and without .pcd.
+/// Returns the name of a scan without folders, without .gz and without the extension of a file of scans.
 GAUSSMAP_API std::string scanStem(const std::filesystem::path& scan);
 
-/// Returns the path below its folder under which a copy of each scan can be written, always with the extension of an
-/// uncompressed file: cloud.pcd for cloud.pcd.gz. If several scans have the same file name, as in 000000/cloud.pcd and
+/// Returns the path below its folder under which a copy of each scan can be written, always with the extension
+/// .pcd: cloud.pcd for cloud.pcd.gz and cloud.las. If several scans have the same file name, as in 000000/cloud.pcd and
 /// 000001/cloud.pcd, the path of all scans starts with the name of the folder.
 GAUSSMAP_API std::vector<std::filesystem::path> scanCopies(const std::vector<std::filesystem::path>& scans);
 

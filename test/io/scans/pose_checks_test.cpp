@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/scans/pose_checks.h"
 
+#include "gaussmap/io/scans/file_scans.h"
+
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -78,11 +80,9 @@ TEST(PoseDoctor, TakesThePoseOfAScanFromItsHeader) {
   const test::TemporaryDirectory directory;
   std::string bytes = test::xyzHeader(1, "ascii") + "1 2 3\n";
   bytes.replace(bytes.find("VIEWPOINT 0"), 11, "VIEWPOINT 8");
-  const PcdReader reader(directory.write("scan.pcd", bytes));
-  const ScanPose scan = scanPose(reader);
-  EXPECT_EQ(scan.path, reader.path());
-  EXPECT_EQ(scan.pose.translation, Eigen::Vector3d(8, 0, 0));
-  EXPECT_EQ(scan.fingerprint, reader.fingerprint());
+  const FoundScans found = findScans({directory.write("scan.pcd", bytes)});
+  EXPECT_EQ(found.scans.info(0).pose.translation, Eigen::Vector3d(8, 0, 0));
+  EXPECT_EQ(found.poses, "VIEWPOINT of each scan");
 }
 
 }  // namespace

@@ -32,6 +32,23 @@ TEST(ScanList, SortsTheScansOfADirectoryAsPeopleCount) {
             (std::vector<std::string>{"scan1.pcd", "scan2.PCD", "scan02b.pcd", "scan10.pcd"}));
 }
 
+TEST(ScanList, TakesFilesOfOneKindFromADirectoryAndPcdFilesFirst) {
+  const TemporaryDirectory directory;
+  for (const char* const name : {"b.LAS", "a.las", "poses.txt", "list.csv"}) directory.write(name, "");
+  EXPECT_EQ(namesOf(listScans({directory.path()})), (std::vector<std::string>{"a.las", "b.LAS"}));
+  directory.write("c.laz", "");
+  try {
+    listScans({directory.path()});
+    ADD_FAILURE() << "files of two kinds";
+  } catch (const FileError& error) {
+    EXPECT_NE(std::string(error.what()).find("holds files of several kinds: .las (2 files), .laz (1 file)"),
+              std::string::npos)
+        << error.what();
+  }
+  directory.write("d.pcd", "");
+  EXPECT_EQ(namesOf(listScans({directory.path()})), std::vector<std::string>{"d.pcd"});
+}
+
 TEST(ScanList, KeepsTheOrderOfTheInputs) {
   const TemporaryDirectory directory;
   std::filesystem::create_directory(directory.path() / "a");
