@@ -99,7 +99,7 @@ RegistrationResult findScan(const std::filesystem::path& path, const GaussianMap
     RegistrationResult result = registerFile(path, map, guess, command);
     if (result.fitness > 0.0) return result;
   }
-  throw FileError(path, "no part of it lies on the map after the search; use a better --guess, or --poses");
+  throw FileError(path, "no part of the scan lies on the map after the search; use a better --guess or --poses");
 }
 
 /// Below this fitness the program says that the pose may be wrong. Measured: right poses of scans of a mapped place
@@ -155,7 +155,7 @@ void run(const RegisterCommand& command) {
   if (command.json) printJson(all);
   if (not_found > 0)
     throw std::runtime_error(std::to_string(not_found) + " of " + std::to_string(scans.size()) +
-                             " scans were not registered, see above");
+                             (not_found == 1 ? " scans was" : " scans were") + " not registered, see above");
 }
 
 }  // namespace
