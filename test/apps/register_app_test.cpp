@@ -215,6 +215,8 @@ TEST_F(RegisterApp, SaysWhatIsWrong) {
   expectUsageError("guess", {"register", scan(0), world("map.gmap"), "--guess", "1", "2"});
   expectUsageError("quaternion",
                    {"register", scan(0), world("map.gmap"), "--guess", "0", "0", "0", "0", "0", "0", "0"});
+  expectUsageError("check the order of its numbers, or give more digits",
+                   {"register", scan(0), world("map.gmap"), "--guess", "9", "-9", "2", "0", "0", "0.19", "0.98"});
   expectDataError("none.gmap", {"register", scan(0), own("none.gmap")});
   expectDataError("none.pcd", {"register", own("none.pcd"), world("map.gmap")});
   expectDataError("no part of the scan lies on the map after the search",
