@@ -46,12 +46,11 @@ std::string conditionOf(PoseConvention better) {
 /// Returns what to do: "use --frame map".
 std::string adviceFor(PoseConvention better, bool in_map_frame, PoseConvention given) {
   if (better == PoseConvention::NoMotion) return "use --frame map";
-  const std::string frame = in_map_frame ? "without --frame map" : "";
+  if (in_map_frame && better == given) return "run the command without --frame map";
   if (better == PoseConvention::SensorToMap)
-    return "run the command " +
-           (in_map_frame && given == PoseConvention::SensorToMap ? frame : "without --pose-convention");
+    return std::string("run the command without ") + (in_map_frame ? "--frame map and " : "") + "--pose-convention";
   for (const auto& [name, convention] : kConventionNames)
-    if (convention == better) return "use --pose-convention " + name + (frame.empty() ? "" : ", " + frame);
+    if (convention == better) return "use --pose-convention " + name + (in_map_frame ? " without --frame map" : "");
   return "";
 }
 
@@ -93,7 +92,7 @@ std::string faultOfPoses(FoundScans& found, PoseConvention convention, int threa
          " pieces of surface lie on the next scan, but " + std::to_string(check.duel.other_only + check.duel.both) +
          " " + conditionOf(*check.better) + "; " +
          adviceFor(*check.better, scans.frame() == ScanFrame::Map, convention) +
-         ", or --no-pose-check if the poses are right";
+         ", or use --no-pose-check if the poses are right";
 }
 
 }  // namespace gaussmap::app

@@ -279,7 +279,7 @@ const std::vector<Row>& rows() {
          for (int i = 0; i < 6000; ++i) fog.emplace_back(anywhere(-30, 30), anywhere(-30, 30), anywhere(-5, 20));
          return Words{"register", t.cloud("fog.pcd", fog, T::poseOf(2)), map};
        }},
-      {"no part of it lies on the map after the search",
+      {"no part of the scan lies on the map after the search",
        [](const T& t) {
          const std::string map = t.map();
          return Words{"register", t.own("scans/1.pcd"), map, "--guess", "500", "0", "0", "0", "0", "0", "1"};

@@ -43,8 +43,8 @@ struct PoseFile {
   std::string layout;                         ///< for messages: "time x y z qx qy qz qw"
   std::vector<Entry> entries;                 ///< in the order of the file
   bool by_name = false;                       ///< true: the keys are names of scans
-  /// true: the indices may not be numbers of scans: they stand behind the pose (ids of RTAB-Map), are those of the
-  /// vertices of a pose graph, or are called times.
+  /// true: the indices may be other ids, not numbers of scans: ids behind the pose (RTAB-Map), ids of the vertices of
+  /// a pose graph, or whole numbers in a column named time.
   bool indices_may_be_ids = false;
 };
 
@@ -75,8 +75,9 @@ enum class PoseMatch {
 /// Options of matchPoses().
 struct PoseMatching {
   PoseMatch match = PoseMatch::Automatic;
-  std::optional<double> max_time_gap;  ///< [s]; std::nullopt: half of the median interval between scans
-  bool interpolate = false;            ///< between the two nearest poses: linear and slerp; false: the nearest pose
+  /// [s]; std::nullopt: half of the median interval between scans (for one scan: between poses)
+  std::optional<double> max_time_gap;
+  bool interpolate = false;  ///< between the poses before and after: linear and slerp; false: the nearest pose
 };
 
 /// A scan to which a pose belongs.
