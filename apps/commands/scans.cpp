@@ -221,8 +221,9 @@ void run(const ScansCommand& command) {
   if (would_stop) sayThatTheTableLeavesOut(found.warnings);
   for (const std::string& warning : found.scans.coordinateWarnings(command.resolution))
     found.warnings.push_back(warning);
-  std::string fault;
-  if (command.input.meaning.check) fault = faultOfPoses(found, command.input.meaning.convention, 0);
+  const PoseFinding finding = checkMeaning(found, command.input.meaning, impossibleConvention(command.input), 0);
+  std::string fault = finding.fault;
+  if (!finding.warning.empty()) found.warnings.push_back(finding.warning);
   if (would_stop) {
     const std::size_t missing = found.without_pose.size(), all = found.scans.size() + missing;
     fault = command.input.poses + ": " + std::to_string(missing) + " of " + std::to_string(all) +

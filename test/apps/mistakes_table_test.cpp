@@ -254,6 +254,19 @@ const std::vector<Row>& rows() {
        [](const T& t) {
          return t.build(t.scans([](unsigned i) { return poseAs(PoseConvention::Camera, T::poseOf(i)); }));
        }},
+      {"The poses may be wrong, for example their times, units or sensor",
+       [](const T& t) {
+         return t.build(t.scans([](unsigned i) {
+           Pose pose = T::poseOf(i);
+           pose.rotation =
+               Pose::Rotation(pose.rotation * Eigen::AngleAxisd(1.05, Eigen::Vector3d(0.2, 0.1, 1).normalized()));
+           return pose;
+         }));
+       }},
+      {"they do without the extrinsic",
+       [](const T& t) {
+         return t.build(t.scans(), {"--extrinsic", "0.3 0.1 0 0 0 0.5 0.8660254"});
+       }},
       // Sensors
       {"but their points show that the sensor moved",
        [](const T& t) { return Words{"clean", t.withoutPositions(), "--frame", "map", "-o", t.own("c")}; }},

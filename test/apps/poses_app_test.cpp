@@ -6,6 +6,7 @@
 #include "apps/app_fixture.h"
 #include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
+#include "gaussmap/io/pcd/pcd_writer.h"
 #include "gaussmap/io/scans/pcd_scans.h"
 #include "io/gmap/map_equality.h"
 
@@ -200,6 +201,19 @@ TEST_F(PosesApp, ReadTheCalibrationBesideKittiPoses) {
   // The file of another kind is left alone.
   EXPECT_EQ(runApp({"scans", numbered(), "--poses", file({"0", "1", "2", "3", "4"})}).out.find("calib.txt"),
             std::string::npos);
+}
+
+TEST_F(PosesApp, MayBeTheSameForASensorThatStandsStill) {
+  // Three scans of one wall from one place, with different noise.
+  std::vector<std::string> words = {"pcd2map", "-o", own("map.gmap")};
+  for (int scan = 0; scan < 3; ++scan) {
+    std::vector<Vector<3>> points;
+    for (int i = 0; i < 2000; ++i)
+      points.emplace_back(5.0 + 0.004 * ((i * 7 + scan * 3) % 5), 0.1 * (i % 50) - 2.5, 0.1 * (i / 50) - 2.0);
+    writePcd(own("still" + std::to_string(scan) + ".pcd"), points);
+    words.push_back(own("still" + std::to_string(scan) + ".pcd"));
+  }
+  succeed(words);
 }
 
 TEST_F(PosesApp, ScansShowsOneTable) {
