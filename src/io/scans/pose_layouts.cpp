@@ -108,9 +108,8 @@ bool bodyFits(const Samples& samples, const Body& body, std::size_t begin) {
   const std::size_t end = begin + body.columns.size();
   if (body.rotation == RotationKind::Quaternion)
     return fitsAll(samples, begin, end, [](const double* v) { return isUnitQuaternion(v + 3); });
-  return fitsAll(samples, begin, end, [&](const double* v) {
-    return isRigid(v) && (body.columns.size() < 16 || (v[12] == 0.0 && v[13] == 0.0 && v[14] == 0.0 && v[15] == 1.0));
-  });
+  return fitsAll(samples, begin, end,
+                 [&](const double* v) { return isRigid(v) && (body.columns.size() < 16 || lastRowFault(v).empty()); });
 }
 
 bool leadFits(const Samples& samples, const Columns& lead) {
@@ -133,6 +132,7 @@ PoseLayout layoutOf(const Samples& samples, const Columns& lead, const Body& bod
   if (samples.named) layout.columns = {PoseColumn::Name};
   layout.columns = layout.columns + lead + body.columns;
   layout.rotation = body.rotation;
+  if (body.columns.size() == 16) layout.last_row = layout.columns.size() - 4;
   return layout;
 }
 
@@ -221,6 +221,7 @@ PoseLayout layoutOfFormat(const PoseText& text, PoseFormat format, std::size_t f
   else if (samples.numbers > body.size())
     layout.columns = {PoseColumn::Key};
   layout.columns = layout.columns + body;
+  if (format == PoseFormat::Matrix4) layout.last_row = layout.columns.size() - 4;
   const std::size_t expected = layout.columns.size(), found = samples.numbers + (samples.named ? 1 : 0);
   if (found < expected || (found > expected && (is_matrix || is_angles)))
     text.fail(samples.first_line, countText(samples) + " do not fit --pose-format: expected '" + layout.text() + "'");

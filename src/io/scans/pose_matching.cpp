@@ -268,6 +268,7 @@ PoseMatch chooseMatch(const PoseFile& file, const std::vector<ScanKey>& scans, c
 MatchedPoses matchPoses(const PoseFile& file, const std::vector<ScanKey>& scans, const PoseMatching& options) {
   MatchedPoses matched;
   matched.poses.resize(scans.size());
+  matched.warnings = file.warnings;
   const ScanNumbers numbers = numbersOfScans(scans);
   matched.match = options.match == PoseMatch::Automatic ? chooseMatch(file, scans, numbers) : options.match;
   switch (matched.match) {

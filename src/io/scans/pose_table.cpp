@@ -5,12 +5,14 @@
 #include <limits>
 
 #include "io/files/text.h"
+#include "io/files/written_position.h"
 #include "io/scans/pose_text.h"
 
 namespace gaussmap::detail {
 namespace {
 
 constexpr std::uint64_t kMaxKeyIndex = 100000000;  // larger whole numbers are times
+constexpr std::array<PoseColumn, 3> kPositionColumns = {PoseColumn::X, PoseColumn::Y, PoseColumn::Z};
 
 /// Reads the lines of a table one by one.
 class TableReader {
@@ -26,6 +28,8 @@ class TableReader {
     PoseFile file;
     for (std::size_t i = first; i < text_.lines.size(); ++i) file.entries.push_back(parse(text_.lines[i]));
     setTimes(file);
+    if (const std::string warning = positions_.warning(); !warning.empty())
+      file.warnings.push_back(text_.path.string() + ": " + warning);
     return file;
   }
 
@@ -56,8 +60,29 @@ class TableReader {
       ++pose_numbers;
       if (std::isnan(value)) ++nan_numbers;
     }
+    if (layout_.last_row && nan_numbers < pose_numbers) requireLastRow(line.number, fields);
     if (nan_numbers < pose_numbers) entry.pose = pose(line.number);
+    if (entry.pose) addPosition(fields, *entry.pose);
     return entry;
+  }
+
+  void requireLastRow(std::size_t line, const std::vector<std::string_view>& fields) const {
+    std::array<double, 16> elements{};
+    for (std::size_t i = 0; i < elements.size(); ++i)
+      if (const std::string_view field = fields[*layout_.last_row - 12 + i]; !parseNumber(field, elements[i]))
+        text_.fail(line, quote(field) + " is not a number");
+    if (const std::string fault = lastRowFault(elements.data()); !fault.empty()) text_.fail(line, fault);
+  }
+
+  void addPosition(const std::vector<std::string_view>& fields, const Pose& pose) {
+    std::array<std::string_view, 3> words;
+    for (std::size_t i = 0; i < layout_.columns.size(); ++i)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        if (layout_.columns[i] == kPositionColumns[axis] ||
+            layout_.columns[i] == matrixColumn(4 * static_cast<int>(axis) + 3))
+          words[axis] = fields[i];
+    const Eigen::Vector3d& t = pose.translation;
+    positions_.add(stepOfRoundedPosition(words), t.x(), t.y(), t.z());
   }
 
   void setKey(PoseColumn column, std::string_view field, PoseFile::Entry& entry) {
@@ -137,6 +162,7 @@ class TableReader {
   std::size_t width_ = 0;
   std::array<double, static_cast<std::size_t>(PoseColumn::MEnd)> numbers_{};
   std::vector<std::optional<Decimal>> keys_, nanoseconds_;
+  RoundedPositions positions_;
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "io/files/text.h"
@@ -99,6 +100,19 @@ std::vector<double> numbersOf(const std::vector<std::string_view>& fields, std::
 bool isRigid(const double* elements) {
   const MatrixRows matrix(elements);
   return matrix.allFinite() && rotationError(matrix) <= kRotationTolerance && matrix.leftCols<3>().determinant() > 0.0;
+}
+
+std::string lastRowFault(const double* elements, bool any_corner) {
+  const double* const row = elements + 12;
+  if (row[0] == 0.0 && row[1] == 0.0 && row[2] == 0.0 && (any_corner || row[3] == 1.0)) return "";
+  if (std::all_of(elements, elements + 12, [](double value) { return std::isnan(value); }) && std::isnan(row[0]))
+    return "";
+  std::ostringstream text;
+  text << "the last row of the 4 x 4 matrix is " << row[0] << ' ' << row[1] << ' ' << row[2] << ' ' << row[3]
+       << " instead of 0 0 0 1";
+  const bool by_columns = elements[3] == 0.0 && elements[7] == 0.0 && elements[11] == 0.0 && row[3] == 1.0;
+  if (by_columns) text << "; is it written column by column?";
+  return text.str();
 }
 
 Pose poseOfMatrix(const PoseText& text, std::size_t line, const double* elements) {

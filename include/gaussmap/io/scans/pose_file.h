@@ -46,6 +46,7 @@ struct PoseFile {
   /// true: the indices may not be numbers of scans: they stand behind the pose (ids of RTAB-Map), are those of the
   /// vertices of a pose graph, or are called times.
   bool indices_may_be_ids = false;
+  std::vector<std::string> warnings;  ///< one or two sentences each; matchPoses() repeats them
 };
 
 /// Reads a pose file.
