@@ -168,6 +168,23 @@ std::optional<InferredLayout> usualLayout(const Samples& samples) {
   return std::nullopt;
 }
 
+constexpr std::size_t kEuRocNumbers = 17;  // time, pose with w first, velocity, biases
+
+/// Returns true if the numbers can be those of EuRoC: a unit quaternion with w first, and not the columns of a matrix.
+bool isEuRoc(const Samples& samples) {
+  return !samples.named && samples.numbers == kEuRocNumbers &&
+         fitsAll(samples, 4, 8, [](const double* v) { return isUnitQuaternion(v); }) &&
+         !fitsAll(samples, 1, 17, [](const double* v) { return v[3] == 0.0 && v[7] == 0.0 && v[11] == 0.0; });
+}
+
+InferredLayout layoutOfEuRoc() {
+  InferredLayout euroc;
+  euroc.layout.columns = Columns{PoseColumn::Time} + kPosition + kWxyz;
+  euroc.layout.unit = TimeUnit::Nanoseconds;
+  euroc.format = PoseFormat::EuRoc;
+  return euroc;
+}
+
 std::string countText(const Samples& samples) {
   return (samples.named ? "a name and " : "") + std::to_string(samples.numbers) + " numbers per line";
 }
@@ -178,6 +195,11 @@ InferredLayout inferLayout(const PoseText& text, std::size_t first) {
   if (first >= text.lines.size()) throw FileError(text.path, "no pose in this file, only a header line");
   const Samples samples = takeSamples(text, first);
   std::vector<InferredLayout> fitting = fittingLayouts(samples);
+  if (fitting.empty() && isEuRoc(samples)) {
+    if (isWhole(samples, 0, 1e17, 1e19)) return layoutOfEuRoc();
+    text.fail(samples.first_line,
+              "17 numbers: EuRoC? Its time is in whole nanoseconds. Add its header line, or use --pose-format euroc");
+  }
   // An eighth number in front (TUM) is far more common than one behind the pose.
   if (fitting.size() > 1 && samples.numbers == 8 && !samples.named)
     fitting.erase(std::remove_if(fitting.begin(), fitting.end(), [](const auto& one) { return one.index_behind; }),

@@ -14,6 +14,18 @@ namespace {
 constexpr std::uint64_t kMaxKeyIndex = 100000000;  // larger whole numbers are times
 constexpr std::array<PoseColumn, 3> kPositionColumns = {PoseColumn::X, PoseColumn::Y, PoseColumn::Z};
 
+/// Returns the index that a number is, also if it is written as 7.000000; nullopt if it is not whole or too large.
+std::optional<std::uint64_t> indexOf(const Decimal& number) {
+  std::uint64_t index = number.digits;
+  for (int i = 0; i < number.exponent && index > 0 && index < kMaxKeyIndex; ++i) index *= 10;
+  for (int i = number.exponent; i < 0 && index > 0; ++i) {
+    if (index % 10 != 0) return std::nullopt;
+    index /= 10;
+  }
+  if (index >= kMaxKeyIndex || (number.negative && index > 0)) return std::nullopt;
+  return index;
+}
+
 /// Reads the lines of a table one by one.
 class TableReader {
  public:
@@ -131,12 +143,14 @@ class TableReader {
     const bool has_time = layout_.has(PoseColumn::Time) || layout_.has(PoseColumn::Seconds);
     if ((!has_key && !has_time) || (has_key && named_)) return;
     const bool has_index = layout_.has(PoseColumn::Index);
-    if (!has_index && std::all_of(keys_.begin(), keys_.end(), [](const std::optional<Decimal>& key) {
-          return key && key->whole && key->digits < kMaxKeyIndex;
-        })) {
-      for (std::size_t i = 0; i < keys_.size(); ++i) file.entries[i].index = keys_[i]->digits;
-      if (has_key) return;
-      file.indices_may_be_ids = true;  // a header calls them times, but they can be the numbers of scans
+    if (!has_index && std::all_of(keys_.begin(), keys_.end(),
+                                  [](const std::optional<Decimal>& key) { return key && indexOf(*key).has_value(); })) {
+      for (std::size_t i = 0; i < keys_.size(); ++i) file.entries[i].index = indexOf(*keys_[i]);
+      const bool has_digits_only =
+          std::all_of(keys_.begin(), keys_.end(), [](const std::optional<Decimal>& key) { return key->whole; });
+      if (has_key && has_digits_only) return;
+      // A header calls them times, or they are written as 7.000000, but they can be the numbers of scans.
+      file.indices_may_be_ids = true;
     }
     double largest = 0.0;
     for (const std::optional<Decimal>& key : keys_)

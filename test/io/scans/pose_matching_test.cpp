@@ -243,6 +243,13 @@ TEST(PoseMatching, SortsVerticesByTheirIds) {
   EXPECT_EQ(linesFor(file, {"0.pcd", "1.pcd", "2.pcd"}, PoseMatch::Order), (Lines{2, 3, 1}));
 }
 
+TEST(PoseMatching, TakesWholeDecimalsForNumbersOfScans) {
+  const PoseFile file = fileOf({"0.000000", "1.000000", "2.000000", "3.000000"});
+  EXPECT_EQ(linesFor(file, {"000001.pcd", "000003.pcd"}, PoseMatch::Index), (Lines{2, 4}));
+  EXPECT_EQ(linesFor(file, {"1.5.pcd", "2.5.pcd"}, PoseMatch::Time), (Lines{3, 4}));
+  EXPECT_EQ(linesFor(file, {"10.pcd", "20.pcd", "30.pcd", "40.pcd"}, PoseMatch::Order), (Lines{1, 2, 3, 4}));
+}
+
 TEST(PoseMatching, TellsWhichIndicesTheFileHas) {
   const PoseFile file = fileOf({"1", "2", "3"});
   expectIn("(the file has indices 1 to 3)", remarksOf(file, {"1.pcd", "2.pcd"}));
