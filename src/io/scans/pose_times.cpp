@@ -127,7 +127,7 @@ std::size_t PoseTimes::nearest(Instant wanted) const {
 PoseTimes::Limits PoseTimes::limits(const std::vector<Instant>& times, const PoseMatching& options) const {
   if (options.max_time_gap) {
     const Instant given(static_cast<std::int64_t>(std::llround(std::min(*options.max_time_gap, 1e9) * 1e9)));
-    return {given, given, given};
+    return {given, given, given, given};
   }
   std::vector<Instant> own;
   for (std::size_t i = 0; i < order_.size(); ++i) own.push_back(time(i));
@@ -142,6 +142,7 @@ PoseTimes::Limits PoseTimes::limits(const std::vector<Instant>& times, const Pos
   limits.nearest = std::min(limits.nearest, kLargestLimit);
   limits.outside = std::min(limits.nearest, std::max(pose_step, kSmallestLimit));
   // One missing pose between two others is no gap, with some allowance for the jitter of the times.
+  limits.usual = std::max(limits.nearest, 3 * pose_step / 4);
   limits.interpolated = std::min(std::max(limits.nearest, pose_step + pose_step / 5), kLargestLimit);
   return limits;
 }
@@ -200,6 +201,7 @@ void PoseTimes::match(const std::vector<Instant>& times, const std::vector<ScanK
   std::vector<std::optional<std::size_t>> taken(times.size());  // the entries whose poses are used unchanged
   Instant largest(0), most(0);
   LargestMotion motion;
+  std::pair<Instant, std::size_t> widest(0, 0);  // the largest gap between interpolated poses, and its scan
   for (std::size_t i = 0; i < times.size(); ++i) {
     const std::size_t near = nearest(times[i]);
     const std::optional<Step> step = stepAt(times[i]);
@@ -219,6 +221,8 @@ void PoseTimes::match(const std::vector<Instant>& times, const std::vector<ScanK
     most = std::max(most, limit);
     if (options.interpolate && step && time(step->after) - time(step->before) <= 4 * limit) {
       matched.poses[i] = interpolate(*entry(step->before).pose, *entry(step->after).pose, step->share);
+      if (const Instant width = time(step->after) - time(step->before); gap > limits.usual && width > widest.first)
+        widest = {width, i};
       continue;
     }
     matched.poses[i] = entry(near).pose;
@@ -231,6 +235,10 @@ void PoseTimes::match(const std::vector<Instant>& times, const std::vector<ScanK
       motion.add(*matched.poses[i], interpolate(*entry(step->before).pose, *entry(step->after).pose, step->share), i);
   }
   warnOfSharedPoses(times, scans, taken, matched);
+  if (widest.first > Instant(0))
+    matched.warnings.push_back(file_.path.string() + ": " + scans[widest.second].name +
+                               " is interpolated between poses " + shortTime(widest.first) +
+                               " apart, because a pose is missing there");
   matched.how = "matched by time, " + std::string(options.interpolate ? "interpolated, " : "") + "at most " +
                 shortTime(largest) + " apart (limit " + shortTime(most) + ")";
   if (motion.noticed()) {

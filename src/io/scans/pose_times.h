@@ -33,6 +33,7 @@ class PoseTimes {
     Instant nearest{};       ///< if the scan gets the nearest pose
     Instant outside{};       ///< if the scan is before the first pose or behind the last one
     Instant interpolated{};  ///< if the scan is between two poses, which are interpolated
+    Instant usual{};         ///< the same, without a warning
   };
   const PoseFile::Entry& entry(std::size_t i) const { return file_.entries[order_[i]]; }
   Instant time(std::size_t i) const { return *entry(i).time; }

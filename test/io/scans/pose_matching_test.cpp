@@ -189,6 +189,15 @@ TEST(PoseMatching, TakesRarePosesOnlyWithInterpolation) {
   for (std::size_t i = 0; i < lines.size(); ++i) EXPECT_NEAR(lines[i], expected[i], 1e-9);
 }
 
+TEST(PoseMatching, WarnsIfItInterpolatesOverAMissingPose) {
+  const PoseFile file = fileOf({"1700000000.0", "1700000001.0", "1700000002.0", "1700000004.0", "1700000005.0"});
+  PoseMatching options;
+  options.interpolate = true;
+  expectIn("1700000003.0.pcd is interpolated between poses 2 s apart, because a pose is missing there",
+           remarksOf(file, {"1700000001.0.pcd", "1700000002.0.pcd", "1700000003.0.pcd"}, options));
+  EXPECT_TRUE(matchPoses(file, keysOf({"1700000000.5.pcd", "1700000001.5.pcd"}), options).warnings.empty());
+}
+
 TEST(PoseMatching, NeverTakesAPoseOfAnotherYear) {
   const PoseFile file = fileOf({"1600000000.0", "1700000000.0"});
   EXPECT_EQ(linesFor(file, {"1600000100.0.pcd", "1700000000.0.pcd"}, PoseMatch::Time), (Lines{0, 2}));
