@@ -202,6 +202,14 @@ void print(const FoundScans& found, const Table& table, bool each) {
   }
 }
 
+/// Adds "of this table" to the warning about scans without a pose: pcd2map would not leave them out, but stop.
+void sayThatTheTableLeavesOut(std::vector<std::string>& warnings) {
+  const std::string end = "; left out";
+  for (std::string& warning : warnings)
+    if (warning.size() > end.size() && warning.compare(warning.size() - end.size(), end.size(), end) == 0)
+      warning += " of this table";
+}
+
 /// Prints the table. Throws std::runtime_error with the reason if pcd2map would stop.
 void run(const ScansCommand& command) {
   // Scans without a pose are listed first. Then the command fails, as pcd2map does.
@@ -209,14 +217,17 @@ void run(const ScansCommand& command) {
   options.skip_without_pose = true;
   FoundScans found = findScans({command.input.paths.begin(), command.input.paths.end()}, options);
   const Table table = tableOf(found.scans, detail::limitsOf(accumulateOptions(command.input, command.resolution, 1)));
+  const bool would_stop = !found.without_pose.empty() && !command.input.skip_without_pose;
+  if (would_stop) sayThatTheTableLeavesOut(found.warnings);
   for (const std::string& warning : found.scans.coordinateWarnings(command.resolution))
     found.warnings.push_back(warning);
-  std::string fault;
-  if (command.input.meaning.check) fault = faultOfPoses(found, command.input.meaning.convention, 0);
-  if (!found.without_pose.empty() && !command.input.skip_without_pose) {
+  const PoseFinding finding = checkMeaning(found, command.input.meaning, impossibleConvention(command.input), 0);
+  std::string fault = finding.fault;
+  if (!finding.warning.empty()) found.warnings.push_back(finding.warning);
+  if (would_stop) {
     const std::size_t missing = found.without_pose.size(), all = found.scans.size() + missing;
     fault = command.input.poses + ": " + std::to_string(missing) + " of " + std::to_string(all) +
-            (missing == 1 ? " scans has" : " scans have") +
+            (all == 1 ? " scan" : " scans") + (missing == 1 ? " has" : " have") +
             " no pose, so pcd2map would stop; use --skip-without-pose to leave such scans out";
   }
   if (command.json)

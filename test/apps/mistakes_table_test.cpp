@@ -199,6 +199,19 @@ const std::vector<Row>& rows() {
        [](const T& t) {
          return t.build(t.scans([](unsigned i) { return poseAs(PoseConvention::Camera, T::poseOf(i)); }));
        }},
+      {"The poses may be wrong, for example their times, units or sensor",
+       [](const T& t) {
+         return t.build(t.scans([](unsigned i) {
+           Pose pose = T::poseOf(i);
+           pose.rotation =
+               Pose::Rotation(pose.rotation * Eigen::AngleAxisd(1.05, Eigen::Vector3d(0.2, 0.1, 1).normalized()));
+           return pose;
+         }));
+       }},
+      {"they do without the extrinsic",
+       [](const T& t) {
+         return t.build(t.scans(), {"--extrinsic", "0.3 0.1 0 0 0 0.5 0.8660254"});
+       }},
       // Sensors
       {"but their points show that the sensor moved",
        [](const T& t) { return Words{"clean", t.withoutPositions(), "--frame", "map", "-o", t.own("c")}; }},
@@ -224,7 +237,7 @@ const std::vector<Row>& rows() {
          for (int i = 0; i < 6000; ++i) fog.emplace_back(anywhere(-30, 30), anywhere(-30, 30), anywhere(-5, 20));
          return Words{"register", t.cloud("fog.pcd", fog, T::poseOf(2)), map};
        }},
-      {"no part of it lies on the map after the search",
+      {"no part of the scan lies on the map after the search",
        [](const T& t) {
          const std::string map = t.map();
          return Words{"register", t.own("scans/1.pcd"), map, "--guess", "500", "0", "0", "0", "0", "0", "1"};

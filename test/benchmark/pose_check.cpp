@@ -179,7 +179,7 @@ const char* nameOf(PoseConvention convention) {
 }
 
 struct Counts {
-  int runs = 0, invisible = 0, found = 0, named = 0;
+  int runs = 0, invisible = 0, found = 0, named = 0, doubtful = 0;
 };
 
 struct Options {
@@ -213,6 +213,7 @@ void run(const Options& options) {
       const double start = wallSeconds();
       const PoseCheck result = checkPoses(Run(sequence, first, count, mistake), check);
       seconds += wallSeconds() - start;
+      one.doubtful = result.doubtful && !one.invisible;
       one.found = result.better.has_value() && !one.invisible;
       one.named = one.found && mistake != nullptr && *result.better == mistake->convention;
       if (options.verbose && (mistake == nullptr || (!one.invisible && !one.named))) {
@@ -232,6 +233,7 @@ void run(const Options& options) {
         counts->invisible += one.invisible;
         counts->found += one.found;
         counts->named += one.named;
+        counts->doubtful += one.doubtful;
       }
     }
   }
@@ -253,6 +255,10 @@ void run(const Options& options) {
   };
   for (const auto& [name, row] : table) print(name, row);
   print("all", all);
+  std::printf("warnings that the scans do not fit: %d with the right poses; with mistakes that were not named:",
+              all[0].doubtful);
+  for (std::size_t m = 1; m < all.size(); ++m) std::printf(" %d", all[m].doubtful);
+  std::printf("\n");
   std::printf("%.1f ms per check\n", 1e3 * seconds / options.runs / double(kMistakes.size() + 1));
 }
 

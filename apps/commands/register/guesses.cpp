@@ -17,6 +17,17 @@ bool samePlace(const Pose& a, const Pose& b) {
   return a.translation == b.translation && a.rotation.coeffs() == b.rotation.coeffs();
 }
 
+/// Returns the VIEWPOINT of a scan. If there are `several` scans, returns nullopt for a file that cannot be opened: the
+/// command reports it when it reads its points, and registers the others.
+std::optional<Pose> viewpointOf(const std::filesystem::path& scan, bool several) {
+  try {
+    return PcdReader(scan).header().viewpoint;
+  } catch (const FileError&) {
+    if (!several) throw;
+    return std::nullopt;
+  }
+}
+
 /// Returns the usable VIEWPOINTs. A map in place of a scan has none: it starts at its present place.
 std::vector<std::optional<Pose>> viewpointsOf(const std::vector<std::filesystem::path>& scans, bool guessed) {
   std::vector<std::optional<Pose>> poses(scans.size());
@@ -25,28 +36,31 @@ std::vector<std::optional<Pose>> viewpointsOf(const std::vector<std::filesystem:
       poses[i] = Pose();
       continue;
     }
-    const Pose viewpoint = PcdReader(scans[i]).header().viewpoint;
-    const std::string fault = poseFault(viewpoint);
-    if (fault.empty()) poses[i] = normalised(viewpoint);
+    const std::optional<Pose> viewpoint = viewpointOf(scans[i], scans.size() > 1);
+    if (!viewpoint) continue;
+    const std::string fault = poseFault(*viewpoint);
+    if (fault.empty()) poses[i] = normalised(*viewpoint);
     if (i == 0 && !guessed && !fault.empty())
       throw FileError(scans[i], "its VIEWPOINT cannot be the first guess: " + fault + "; use --guess");
   }
   return poses;
 }
 
-/// Forgets poses that nobody set: the identity of several scans, or one pose of all scans. The first scan keeps the
-/// latter, because the search has to start somewhere.
+/// Forgets poses that nobody set: the identity of several scans, or one pose of all scans that have a pose. The first
+/// of them keeps the latter, because the search has to start somewhere.
 void dropUnset(std::vector<std::optional<Pose>>& poses, const std::vector<std::filesystem::path>& scans) {
   if (poses.size() < 2) return;
-  std::size_t at_identity = 0;
+  std::size_t at_identity = 0, first = poses.size();
   bool all_same = true;
-  for (const std::optional<Pose>& pose : poses) {
-    at_identity += pose && samePlace(*pose, Pose());
-    all_same = all_same && pose && poses[0] && samePlace(*pose, *poses[0]);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (!poses[i]) continue;
+    first = std::min(first, i);
+    at_identity += samePlace(*poses[i], Pose());
+    all_same = all_same && samePlace(*poses[i], *poses[first]);
   }
   for (std::size_t i = 0; i < poses.size(); ++i)
     if (!isMap(scans[i]) && poses[i] &&
-        ((all_same && i > 0) || (!all_same && at_identity > 1 && samePlace(*poses[i], Pose()))))
+        ((all_same && i > first) || (!all_same && at_identity > 1 && samePlace(*poses[i], Pose()))))
       poses[i].reset();
 }
 

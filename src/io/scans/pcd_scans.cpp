@@ -13,6 +13,7 @@
 #include "io/scans/coordinate_checks.h"
 #include "io/scans/pose_checks.h"
 #include "io/scans/scan_names.h"
+#include "sensor/sensor_motion.h"
 
 namespace gaussmap {
 using namespace detail;
@@ -155,6 +156,20 @@ void warnOfScansGivenTwice(const std::vector<std::filesystem::path>& paths, std:
   }
 }
 
+constexpr std::size_t kKeptBytes = 64 << 20;
+
+/// Returns true if the points of scans with the same pose show that the sensor stood still.
+bool standsStill(PcdScans& scans) {
+  scans.keepForNextOpen(kKeptBytes);
+  std::optional<SameView> views;
+  try {
+    views = compareViews(scans);
+  } catch (const FileError&) {  // a later read reports it
+  }
+  scans.keepForNextOpen(0);
+  return views && !views->moved();
+}
+
 }  // namespace
 
 PcdScans::PcdScans(std::vector<PcdScan> scans, ScanFrame frame, std::vector<PcdReader> opened)
@@ -256,15 +271,17 @@ FoundScans findScans(const std::vector<std::filesystem::path>& inputs, const Fin
   }
   if (options.frame == ScanFrame::Map) dropUnneededRotations(kept, warnings);
   const PoseDiagnosis diagnosis = diagnosePoses(kept);
-  if (options.frame == ScanFrame::Sensor)
-    warnings.insert(warnings.end(), diagnosis.warnings.begin(), diagnosis.warnings.end());
   for (std::size_t i = 0; i < kept.size(); ++i) scans[i].pose = normalised(kept[i].pose);
-  return {PcdScans(std::move(scans), options.frame, std::move(kept_readers)),
-          std::move(warnings),
-          std::move(assigned.description),
-          std::move(assigned.without_pose),
-          std::move(as_read),
-          assigned.extrinsic};
+  FoundScans found{PcdScans(std::move(scans), options.frame, std::move(kept_readers)),
+                   std::move(warnings),
+                   std::move(assigned.description),
+                   std::move(assigned.without_pose),
+                   std::move(as_read),
+                   assigned.extrinsic};
+  if (options.frame == ScanFrame::Map) return found;
+  found.warnings.insert(found.warnings.end(), diagnosis.warnings.begin(), diagnosis.warnings.end());
+  if (!diagnosis.same_pose.empty() && !standsStill(found.scans)) found.warnings.push_back(diagnosis.same_pose);
+  return found;
 }
 
 FoundScans findScans(const std::vector<std::filesystem::path>& inputs, const std::filesystem::path& poses) {

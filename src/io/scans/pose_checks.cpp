@@ -48,8 +48,8 @@ void warnOfIdenticalPoses(const std::vector<ScanPose>& scans, PoseDiagnosis& dia
   const ScanPoses like_first = scansAt(scans.front().pose, scans);
   if (like_first.size() == scans.size()) {
     if (cloudsDiffer(like_first))
-      diagnosis.warnings.push_back("all " + std::to_string(scans.size()) + " scans have the same pose " +
-                                   describe(scans.front().pose) + " but their points differ. " + kWayOut);
+      diagnosis.same_pose = "all " + std::to_string(scans.size()) + " scans have the same pose " +
+                            describe(scans.front().pose) + " but their points differ. " + kWayOut;
     return;
   }
   const ScanPoses at_identity = scansAt(Pose{}, scans);

@@ -29,6 +29,7 @@ void dropUnneededRotations(std::vector<ScanPose>& scans, std::vector<std::string
 
 struct PoseDiagnosis {
   std::vector<std::string> warnings;  ///< one or two sentences each, with file names and what to do
+  std::string same_pose;              ///< a warning if all scans have the same pose but differ; else empty
 };
 
 /// Checks the poses of all scans before a map is built from them. Throws FileError with the name of the scan if a pose

@@ -167,7 +167,7 @@ void matchByIndex(const PoseFile& file, const std::vector<ScanKey>& scans, const
                : "no index " + std::to_string(index) +
                      (index < lowest ? "; the indices of the file start at " + std::to_string(lowest) : ""));
   }
-  matched.how = entries.byLine() ? "matched by the number in the name of the scan, counted from the first pose = 0"
+  matched.how = entries.byLine() ? "matched by the number in the name of the scan; number 0 is the first pose"
                                  : "matched by index, the number in the name of the scan";
   if (!entries.byLine())
     matched.how += " (the file has indices " + std::to_string(lowest) + " to " + std::to_string(highest) + ")";
@@ -227,7 +227,8 @@ void matchByOrder(const PoseFile& file, const std::vector<ScanKey>& scans, const
     throw FileError(file.path, std::to_string(file.entries.size()) + " poses for " + std::to_string(scans.size()) +
                                    (scans.size() == 1 ? " scan: " : " scans: ") + why +
                                    "Give one line per scan in the order of the scans, start each line with the name of "
-                                   "its scan, or use --match-poses index if the number in a name is that of the line");
+                                   "its scan, or use --match-poses index if the number in the name of a scan is its "
+                                   "line number, counted from 0");
   }
   const std::vector<std::size_t> order = orderOfEntries(file, sort, matched);
   for (std::size_t i = 0; i < scans.size(); ++i) take(matched, i, file.entries[order[i]]);

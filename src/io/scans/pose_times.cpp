@@ -245,15 +245,14 @@ void PoseTimes::match(const std::vector<Instant>& times, const std::vector<ScanK
     std::ostringstream text;
     text.precision(2);
     text << file_.path.string() << ": the pose nearest in time is up to " << motion.metres << " m and "
-         << motion.turn * 180.0 / std::acos(-1.0) << " degrees from the pose between its neighbours ("
-         << scans[motion.scan].name << "). "
-         << (options.interpolate ? "The poses have a gap there." : "Use --interpolate.");
+         << motion.turn * 180.0 / std::acos(-1.0) << " degrees from the interpolated pose (" << scans[motion.scan].name
+         << "). " << (options.interpolate ? "The poses have a gap there." : "Use --interpolate.");
     matched.warnings.push_back(text.str());
   }
   if (matched.missing.size() == times.size() && !times.empty()) {
     const auto [low, high] = std::minmax_element(times.begin(), times.end());
-    matched.how = "by time; the scans are from " + timeText(*low) + " to " + timeText(*high) + ", the poses from " +
-                  timeText(time(0)) + " to " + timeText(time(order_.size() - 1));
+    matched.how = "by time; the times of the scans are from " + timeText(*low) + " to " + timeText(*high) +
+                  ", those of the poses from " + timeText(time(0)) + " to " + timeText(time(order_.size() - 1));
   }
 }
 
