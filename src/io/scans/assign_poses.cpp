@@ -118,7 +118,7 @@ void readPoses(std::vector<ScanPose>& scans, const std::vector<ScanKey>& keys, c
     assigned.without_pose.push_back(scans[missing.scan].path.string() + ": " + missing.reason);
   }
   for (std::size_t i = 0; i < scans.size(); ++i)
-    if (matched.poses[i]) scans[i].pose = *matched.poses[i];
+    if (matched.poses[i]) scans[i].pose = *matched.poses[i], scans[i].position_step = 0.0;
   if (!extrinsic) extrinsic = calibrationBeside(file, assigned.warnings);
 }
 

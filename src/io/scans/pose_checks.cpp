@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "io/files/written_position.h"
+
 namespace gaussmap::detail {
 namespace {
 
@@ -71,10 +73,22 @@ void warnOfFarPoses(const std::vector<ScanPose>& scans, PoseDiagnosis& diagnosis
   diagnosis.warnings.push_back(text.str());
 }
 
+void warnOfRoundedPoses(const std::vector<ScanPose>& scans, PoseDiagnosis& diagnosis) {
+  RoundedPositions positions;
+  const ScanPose* first = nullptr;
+  for (const ScanPose& scan : scans) {
+    const Eigen::Vector3d& t = scan.pose.translation;
+    positions.add(scan.position_step, t.x(), t.y(), t.z());
+    if (first == nullptr && scan.position_step > 0.0) first = &scan;
+  }
+  if (const std::string warning = positions.warning(); !warning.empty())
+    diagnosis.warnings.push_back(first->path.string() + " and others: VIEWPOINT: " + warning);
+}
+
 }  // namespace
 
 ScanPose scanPose(const PcdReader& reader) {
-  return {reader.path(), reader.header().viewpoint, reader.fingerprint()};
+  return {reader.path(), reader.header().viewpoint, reader.fingerprint(), reader.header().viewpoint_step};
 }
 
 void dropUnneededRotations(std::vector<ScanPose>& scans, std::vector<std::string>& warnings) {
@@ -99,6 +113,7 @@ PoseDiagnosis diagnosePoses(const std::vector<ScanPose>& scans) {
   PoseDiagnosis diagnosis;
   warnOfIdenticalPoses(scans, diagnosis);
   warnOfFarPoses(scans, diagnosis);
+  warnOfRoundedPoses(scans, diagnosis);
   return diagnosis;
 }
 

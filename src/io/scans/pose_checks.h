@@ -16,6 +16,7 @@ struct ScanPose {
   std::filesystem::path path;
   Pose pose;                      ///< as given, with a quaternion that is not normalised
   std::uint64_t fingerprint = 0;  ///< PcdReader::fingerprint()
+  double position_step = 0.0;     ///< PcdHeader::viewpoint_step; 0 if the pose comes from elsewhere
 };
 
 /// Returns the pose in the header of the scan; if the pose comes from elsewhere, the caller replaces `pose`. Reads a
@@ -35,7 +36,8 @@ struct PoseDiagnosis {
 /// cannot be used, see poseFault().
 ///
 /// Warns if different clouds have the same pose: either all scans, or those scans whose pose is the identity because
-/// they have no pose of their own. Warns of translations beyond 1e8 m.
+/// they have no pose of their own. Warns of translations beyond 1e8 m, and of positions
+/// that were written with too few digits.
 PoseDiagnosis diagnosePoses(const std::vector<ScanPose>& scans);
 
 }  // namespace gaussmap::detail

@@ -2,6 +2,7 @@
 #include "gaussmap/io/scans/pose_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <unordered_map>
 #include <utility>
 
@@ -66,7 +67,7 @@ PoseFile readTable(const PoseText& text, const PoseLayout& layout, std::size_t f
   if (std::find(pose, layout.columns.end(), PoseColumn::Index) != layout.columns.end()) file.indices_may_be_ids = true;
   if (layout.columns.front() == PoseColumn::Key) {  // now it is known what the key is
     const PoseFile::Entry& entry = file.entries.front();
-    file.layout.replace(0, 3, file.by_name ? "name" : entry.index ? "index" : "time");
+    file.layout.replace(0, 3, file.by_name ? "name" : entry.time ? "time" : "index");
   }
   return file;
 }
@@ -92,7 +93,28 @@ PoseFile readNamedTable(const PoseText& text, const std::string& columns) {
   return readTable(text, *named.layout, has_header ? 1 : 0, PoseFormat::Table);
 }
 
+/// Calls text.fail() for images.txt of COLMAP: `id qw qx qy qz tx ty tz camera name`, from the world to the camera.
+void requireNotColmap(const PoseText& text) {
+  const auto isHeading = [](const TextLine& comment) {
+    return comment.text.find("IMAGE_ID") != std::string_view::npos &&
+           comment.text.find("CAMERA_ID") != std::string_view::npos;
+  };
+  bool is_colmap = std::any_of(text.comments.begin(), text.comments.end(), isHeading);
+  const std::vector<std::string_view> words = splitWords(text.lines.front().text);
+  double ignored = 0.0;
+  if (words.size() == 10 && !parseNumber(words[9], ignored)) {
+    std::vector<double> v = numbersOf({words.begin(), words.end() - 1}, 0);
+    is_colmap = is_colmap || (v.size() == 9 && v[0] == std::floor(v[0]) && v[8] == std::floor(v[8]) &&
+                              std::abs(Eigen::Vector4d(v[1], v[2], v[3], v[4]).norm() - 1.0) < kQuaternionTolerance);
+  }
+  if (is_colmap)
+    text.fail(text.lines.front().number,
+              "looks like images.txt of COLMAP, whose poses go from the world to the camera and have no unit. Write "
+              "the poses from the camera to the world, in metres, as 'name x y z qx qy qz qw'");
+}
+
 PoseFile readAutomatic(const PoseText& text) {
+  requireNotColmap(text);
   if (isPoseGraph(text)) return readPoseGraph(text);
   if (isHeader(text)) return readNamedTable(text, "");
   if (isBlocks(text)) return readPoseBlocks(text);

@@ -43,6 +43,7 @@ struct GAUSSMAP_API PcdHeader {
   std::size_t columns = 0;                    ///< numbers per line in DATA ascii
   std::size_t data_offset = 0;                ///< bytes before the data
   std::size_t data_line = 0;                  ///< number of the first line of data; the first line of the file is 1
+  double viewpoint_step = 0.0;  ///< step of the last digit of a rounded position in VIEWPOINT [m]; 0: not rounded
 
   /// Returns the first field of this name, or nullptr if there is none. Padding is not found.
   const PcdField* find(const std::string& name) const;

@@ -86,7 +86,9 @@ struct Extrinsic {
 };
 
 /// Reads an extrinsic: a pose (x y z qx qy qz qw), a 3 x 4 or 4 x 4 matrix, the matrix T_BS of a sensor.yaml (EuRoC),
-/// or the line Tr of a calib.txt (KITTI). Throws FileError if the file has none of them.
+/// the line Tr of a calib.txt (KITTI), or the lines R and T of calib_velo_to_cam.txt or calib_imu_to_velo.txt (KITTI
+/// raw; the name decides between them, because the lidar is the sensor of both). Throws FileError if the file has none
+/// of them.
 GAUSSMAP_API Extrinsic readExtrinsic(const std::filesystem::path& file);
 
 /// Options of findScans().

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/scans/name_dates.h"
+
+#include <algorithm>
+#include <array>
+#include <initializer_list>
+#include <string>
+
+namespace gaussmap::detail {
+namespace {
+
+using Row = std::vector<DigitRun>;
+
+/// The lengths of the runs of a date and a time of day.
+const std::vector<std::vector<std::size_t>>& shapes() {
+  static const std::vector<std::vector<std::size_t>> all = {
+      {4, 2, 2, 2, 2, 2}, {8, 2, 2, 2}, {4, 2, 2, 6}, {8, 6}, {8, 9}, {4, 2, 2, 9}, {14}, {17}};
+  return all;
+}
+
+int numberIn(std::string_view digits, std::size_t first, std::size_t count) {
+  int number = 0;
+  for (const char c : digits.substr(first, count)) number = number * 10 + (c - '0');
+  return number;
+}
+
+/// Days since 1970-01-01 of a date of the Gregorian calendar, after 1970.
+int daysSince1970(int year, int month, int day) {
+  constexpr std::array<int, 12> kBefore = {0, 31, 59, 90, 120, 151, 181, 212, 243, 273, 304, 334};
+  const auto isLeap = [](int y) { return (y % 4 == 0 && y % 100 != 0) || y % 400 == 0; };
+  int days = kBefore[static_cast<std::size_t>(month - 1)] + day - 1 + (month > 2 && isLeap(year) ? 1 : 0);
+  for (int y = 1970; y < year; ++y) days += isLeap(y) ? 366 : 365;
+  return days;
+}
+
+/// Returns the seconds of the digits YYYYMMDDhhmmss; nullopt if they are not a date.
+std::optional<long long> secondsOfDate(std::string_view digits) {
+  const int year = numberIn(digits, 0, 4), month = numberIn(digits, 4, 2), day = numberIn(digits, 6, 2),
+            hour = numberIn(digits, 8, 2), minute = numberIn(digits, 10, 2), second = numberIn(digits, 12, 2);
+  if (year < 1980 || year > 2100 || month < 1 || month > 12 || day < 1 || day > 31) return std::nullopt;
+  if (hour > 23 || minute > 59 || second > 60) return std::nullopt;
+  return ((daysSince1970(year, month, day) * 24LL + hour) * 60 + minute) * 60 + second;
+}
+
+bool isDateSeparator(char c) {
+  return c == '-' || c == '_' || c == 'T' || c == 't' || c == ':' || c == '.' || c == ' ' || c == '/';
+}
+
+/// A date of one name, and the digits of its fraction of a second.
+struct Date {
+  long long seconds = 0;
+  std::string fraction;
+};
+
+/// Reads the date whose first run is `start`. The run behind it is a fraction if `with_fraction` is set.
+std::optional<Date> dateAt(const Row& row, std::size_t start, const std::vector<std::size_t>& shape,
+                           bool with_fraction) {
+  std::string digits;
+  for (std::size_t i = 0; i < shape.size(); ++i) {
+    const DigitRun& run = row[start - i];
+    if (run.digits.size() != shape[i] || (i > 0 && !isDateSeparator(run.before))) return std::nullopt;
+    digits += run.digits;
+  }
+  const std::optional<long long> seconds = secondsOfDate(digits);
+  if (!seconds) return std::nullopt;
+  Date date{*seconds, digits.substr(14)};
+  if (with_fraction) date.fraction += row[start - shape.size()].digits;
+  return date;
+}
+
+/// Returns true if the run behind the date is a fraction of a second in all names. Behind an underscore or a hyphen, it
+/// can also be the number of the scan.
+bool hasFraction(const std::vector<Row>& rows, std::size_t last, bool seconds_differ) {
+  if (last == 0) return false;
+  const char before = rows.front()[last - 1].before;
+  const std::size_t size = rows.front()[last - 1].digits.size();
+  const auto all = [&](const auto& test) {
+    return std::all_of(rows.begin(), rows.end(), [&](const Row& row) { return test(row[last - 1]); });
+  };
+  if (before == '.' || before == ',')
+    return all([&](const DigitRun& run) { return run.before == before && run.digits.size() <= 9; });
+  return (before == '_' || before == '-') && seconds_differ && (size == 3 || size == 6 || size == 9) &&
+         all([&](const DigitRun& run) { return run.before == before && run.digits.size() == size; });
+}
+
+std::vector<Date> datesAt(const std::vector<Row>& rows, std::size_t start, const std::vector<std::size_t>& shape,
+                          bool with_fraction) {
+  std::vector<Date> dates;
+  for (const Row& row : rows) {
+    const std::optional<Date> date = dateAt(row, start, shape, with_fraction);
+    if (!date) return {};
+    dates.push_back(*date);
+  }
+  return dates;
+}
+
+}  // namespace
+
+std::optional<NameDates> datesIn(const std::vector<std::vector<DigitRun>>& rows, std::size_t runs) {
+  for (std::size_t start = runs; start-- > 0;) {
+    for (const std::vector<std::size_t>& shape : shapes()) {
+      if (shape.size() > start + 1) continue;
+      std::vector<Date> dates = datesAt(rows, start, shape, false);
+      if (dates.empty()) continue;
+      const std::size_t last = start + 1 - shape.size();
+      const bool seconds_differ = std::any_of(dates.begin(), dates.end(),
+                                              [&](const Date& date) { return date.seconds != dates.front().seconds; });
+      const bool with_fraction = shape.back() != 9 && shape.back() != 17 && hasFraction(rows, last, seconds_differ);
+      if (with_fraction) dates = datesAt(rows, start, shape, true);
+      NameDates found;
+      found.first = with_fraction ? last - 1 : last;
+      found.runs = start + 1 - found.first;
+      for (const Date& date : dates)
+        found.times.push_back(*parseDecimal(std::to_string(date.seconds) + "." + date.fraction));
+      return found;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace gaussmap::detail
