@@ -81,6 +81,7 @@ void warnOfRoundedPoses(const std::vector<ScanPose>& scans, PoseDiagnosis& diagn
     positions.add(scan.position_step, t.x(), t.y(), t.z());
     if (first == nullptr && scan.position_step > 0.0) first = &scan;
   }
+  if (first == nullptr) return;
   if (const std::string warning = positions.warning(); !warning.empty())
     diagnosis.warnings.push_back(first->path.string() + " and others: VIEWPOINT: " + warning);
 }

@@ -190,11 +190,12 @@ std::vector<std::size_t> orderOfKeys(const PoseFile& file, bool sort, const std:
   }
   std::stable_sort(order.begin(), order.end(), isLess);
   for (std::size_t i = 1; i < order.size(); ++i)
-    if (!isLess(order[i - 1], order[i]))
-      throw FileError(file.path, "lines " + std::to_string(file.entries[order[i - 1]].line) + " and " +
-                                     std::to_string(file.entries[order[i]].line) + " have equal " + name +
-                                     ", and the lines are not in the order of their " + name +
-                                     ", so they cannot be matched by order");
+    if (!isLess(order[i - 1], order[i])) {
+      std::string fault = "lines " + std::to_string(file.entries[order[i - 1]].line) + " and " +
+                          std::to_string(file.entries[order[i]].line) + " have equal ";
+      fault.append(name).append(", and the lines are not in the order of their ").append(name);
+      throw FileError(file.path, fault.append(", so they cannot be matched by order"));
+    }
   matched.warnings.push_back(where + ", so they are sorted before they are matched by order");
   matched.how = "sorted by " + name + " and ";
   return order;
