@@ -34,8 +34,8 @@ void addPoseOptions(Command& command, ScanInput& input) {
       .rare();
   command
       .number("--max-time-gap", input.max_time_gap, 0.0, 1e9,
-              "largest time between a scan and its pose [s]; default: from the median times between scans and between "
-              "poses")
+              "largest time between a scan and its pose [s]; default: half of the median time between scans (for one "
+              "scan: between poses)")
       .rare();
   command.flag("--interpolate", input.interpolate, "interpolate between the pose before and the pose after the scan")
       .rare();

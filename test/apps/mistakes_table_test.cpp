@@ -69,6 +69,15 @@ const std::vector<Row>& rows() {
            return i == 2 ? std::string("nan nan nan nan nan nan nan") : T::text(T::poseOf(i));
          }));
        }},
+      {"outside the times of the poses",
+       [](const T& t) {
+         // Poses every 0.1 s until 0.3 s before the last scan, and scans every second.
+         std::string lines;
+         for (int k = 0; k <= 47; ++k)
+           lines += std::to_string(1700000000 + (k + 5) / 10) + "." + std::to_string((k + 5) % 10) + " " +
+                    T::text(T::poseOf(unsigned(k / 10))) + "\n";
+         return t.build(t.timed(), {"--poses", t.write("poses.txt", lines), "--no-pose-check"});
+       }},
       {"have the same time but other poses",
        [](const T& t) {
          return t.withPoses(t.timed(), t.poses([](unsigned i) { return std::to_string(1700000000 + i / 2) + ".5"; }));

@@ -134,15 +134,11 @@ PoseTimes::Limits PoseTimes::limits(const std::vector<Instant>& times, const Pos
   const std::optional<Instant> of_scans = medianStep(times), of_poses = medianStep(std::move(own));
   const Instant pose_step = of_poses.value_or(Instant(0));
   Limits limits;
-  limits.nearest = std::max(2 * pose_step, kSmallestLimit);
-  if (of_scans)
-    limits.nearest = std::min(limits.nearest, *of_scans / 2);
-  else if (of_poses)
-    limits.nearest = pose_step / 2;
+  limits.nearest = of_scans ? *of_scans / 2 : of_poses ? pose_step / 2 : kSmallestLimit;
   limits.nearest = std::min(limits.nearest, kLargestLimit);
-  limits.outside = std::min(limits.nearest, std::max(pose_step, kSmallestLimit));
+  limits.outside = std::max(pose_step, kSmallestLimit);
   // One missing pose between two others is no gap, with some allowance for the jitter of the times.
-  limits.usual = std::max(limits.nearest, 3 * pose_step / 4);
+  limits.usual = std::max(std::min(limits.nearest, std::max(2 * pose_step, kSmallestLimit)), 3 * pose_step / 4);
   limits.interpolated = std::min(std::max(limits.nearest, pose_step + pose_step / 5), kLargestLimit);
   return limits;
 }
@@ -201,14 +197,13 @@ void PoseTimes::match(const std::vector<Instant>& times, const std::vector<ScanK
   std::vector<std::optional<std::size_t>> taken(times.size());  // the entries whose poses are used unchanged
   Instant largest(0), most(0);
   LargestMotion motion;
+  std::size_t outside = 0, first_outside = 0;    // scans clearly before the first pose or behind the last one
   std::pair<Instant, std::size_t> widest(0, 0);  // the largest gap between interpolated poses, and its scan
   for (std::size_t i = 0; i < times.size(); ++i) {
     const std::size_t near = nearest(times[i]);
     const std::optional<Step> step = stepAt(times[i]);
     const bool between_poses = times[i] >= time(0) && times[i] <= time(order_.size() - 1);
-    const Instant limit = !between_poses                ? limits.outside
-                          : options.interpolate && step ? limits.interpolated
-                                                        : limits.nearest;
+    const Instant limit = between_poses && options.interpolate && step ? limits.interpolated : limits.nearest;
     const Instant gap = between(times[i], time(near));
     requireOne(near);
     if (gap > limit) {
@@ -219,6 +214,7 @@ void PoseTimes::match(const std::vector<Instant>& times, const std::vector<ScanK
     }
     largest = std::max(largest, gap);
     most = std::max(most, limit);
+    if (!between_poses && gap > limits.outside && outside++ == 0) first_outside = i;
     if (options.interpolate && step && time(step->after) - time(step->before) <= 4 * limit) {
       matched.poses[i] = interpolate(*entry(step->before).pose, *entry(step->after).pose, step->share);
       if (const Instant width = time(step->after) - time(step->before); gap > limits.usual && width > widest.first)
@@ -235,6 +231,12 @@ void PoseTimes::match(const std::vector<Instant>& times, const std::vector<ScanK
       motion.add(*matched.poses[i], interpolate(*entry(step->before).pose, *entry(step->after).pose, step->share), i);
   }
   warnOfSharedPoses(times, scans, taken, matched);
+  if (outside > 0)
+    matched.warnings.push_back(file_.path.string() + ": " + scans[first_outside].name +
+                               (outside > 1 ? " and " + std::to_string(outside - 1) + " more" : "") +
+                               (outside > 1 ? " are " : " is ") + "outside the times of the poses, by " +
+                               shortTime(between(times[first_outside], time(nearest(times[first_outside])))) +
+                               ", and used with the nearest pose. Use a smaller --max-time-gap to refuse that.");
   if (widest.first > Instant(0))
     matched.warnings.push_back(file_.path.string() + ": " + scans[widest.second].name +
                                " is interpolated between poses " + shortTime(widest.first) +

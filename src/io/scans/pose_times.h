@@ -31,9 +31,9 @@ class PoseTimes {
   /// The largest accepted times between a scan and its nearest pose.
   struct Limits {
     Instant nearest{};       ///< if the scan gets the nearest pose
-    Instant outside{};       ///< if the scan is before the first pose or behind the last one
+    Instant outside{};       ///< before the first pose or behind the last one, without a warning
     Instant interpolated{};  ///< if the scan is between two poses, which are interpolated
-    Instant usual{};         ///< the same, without a warning
+    Instant usual{};         ///< the same as interpolated, without a warning
   };
   const PoseFile::Entry& entry(std::size_t i) const { return file_.entries[order_[i]]; }
   Instant time(std::size_t i) const { return *entry(i).time; }

@@ -158,22 +158,19 @@ void expectIn(const std::string& piece, const std::string& text) {
   EXPECT_NE(text.find(piece), std::string::npos) << piece << " in: " << text;
 }
 
-TEST(PoseMatching, LimitsTheGapByTheIntervalOfThePoses) {
+TEST(PoseMatching, LimitsTheGapToHalfOfTheIntervalOfTheScans) {
   std::vector<std::string> tenth;  // every 0.1 s from 0 to 9.9 s, but not from 4.1 to 5.9 s
   for (int i = 0; i < 100; ++i)
     if (i <= 40 || i >= 60) tenth.push_back("170000000" + std::to_string(i / 10) + "." + std::to_string(i % 10));
-  const std::vector<std::string> names = {"1700000000.0.pcd", "1700000005.0.pcd", "1700000009.1.pcd",
-                                          "1700000010.2.pcd"};
-  for (const bool interpolate : {false, true}) {
-    PoseMatching options;
-    options.interpolate = interpolate;
-    const Lines lines = linesFor(fileOf(tenth), names, PoseMatch::Time, options);
-    EXPECT_EQ(lines[0], 1.0);
-    EXPECT_EQ(lines[1], 0.0);  // 1 s from the nearest pose, although the scans are 5 s apart
-    EXPECT_NEAR(lines[2], 73.0, 1e-9);
-    EXPECT_EQ(lines[3], 0.0);  // 0.3 s behind the last pose
-  }
-  expectIn("(limit 200 ms)", remarksOf(fileOf(tenth), {"1700000000.0.pcd", "1700000009.1.pcd"}));
+  const std::vector<std::string> rare = {"1700000000.0.pcd", "1700000004.9.pcd", "1700000010.2.pcd"};
+  EXPECT_EQ(linesFor(fileOf(tenth), rare, PoseMatch::Time), (Lines{1, 41, 81}));  // at most 2.65 s apart
+  expectIn("1700000010.2.pcd is outside the times of the poses, by 300 ms", remarksOf(fileOf(tenth), rare));
+  const std::vector<std::string> often = {"1700000004.0.pcd", "1700000004.5.pcd", "1700000005.0.pcd",
+                                          "1700000005.5.pcd", "1700000010.0.pcd", "1700000010.5.pcd"};
+  EXPECT_EQ(linesFor(fileOf(tenth), often, PoseMatch::Time), (Lines{41, 0, 0, 0, 81, 0}));  // at most 0.25 s apart
+  PoseMatching options;
+  options.interpolate = true;
+  expectIn("1700000004.9.pcd is interpolated between poses 2 s apart", remarksOf(fileOf(tenth), rare, options));
 }
 
 TEST(PoseMatching, TakesRarePosesOnlyWithInterpolation) {

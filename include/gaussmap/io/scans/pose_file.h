@@ -76,8 +76,8 @@ enum class PoseMatch {
 /// Options of matchPoses().
 struct PoseMatching {
   PoseMatch match = PoseMatch::Automatic;
-  /// [s]; std::nullopt: half of the median interval between scans, at most twice that between poses, and less for
-  /// scans outside the times of the poses; never more than 10 s
+  /// [s]; std::nullopt: half of the median interval between scans (for one scan: between poses), at most 10 s; with
+  /// `interpolate` at least 1.2 times the median interval between poses
   std::optional<double> max_time_gap;
   bool interpolate = false;  ///< between the poses before and after: linear and slerp; false: the nearest pose
 };
