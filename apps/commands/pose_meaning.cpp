@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "commands/scan_input.h"
+#include "core/same_pose.h"
+#include "io/scans/keeping_points.h"
 #include "registration/pose_check.h"
 
 namespace gaussmap::app {
@@ -19,8 +21,6 @@ const std::map<std::string, PoseConvention> kConventionNames = {{"sensor-to-map"
                                                                 {"w-last", PoseConvention::WLast},
                                                                 {"camera", PoseConvention::Camera},
                                                                 {"optical", PoseConvention::Optical}};
-
-constexpr std::size_t kKeptBytes = 64 << 20;
 
 /// Returns what is wrong with the poses if `better` is right: "if the poses are inverse (map to sensor)".
 std::string conditionOf(PoseConvention better) {
@@ -54,10 +54,6 @@ std::string adviceFor(PoseConvention better, bool in_map_frame, PoseConvention g
   return "";
 }
 
-bool isIdentity(const Pose& pose) {
-  return pose.translation.isZero(0.0) && pose.rotation.coeffs() == Pose::Rotation::Identity().coeffs();
-}
-
 }  // namespace
 
 void addPoseMeaning(Command& command, PoseMeaning& meaning) {
@@ -84,19 +80,17 @@ PoseFinding checkMeaning(FoundScans& found, const PoseMeaning& meaning, std::opt
   options.read = {found.poses_as_read, found.extrinsic};
   detail::PoseCheck check;
   bool fits_without_extrinsic = false;
-  scans.keepForNextOpen(kKeptBytes);  // the command reads these scans again
   try {
+    const detail::KeepingPoints keeping(scans);  // the command reads these scans again
     check = checkPoses(scans, options);
-    if ((check.better || check.doubtful) && !isIdentity(found.extrinsic)) {
+    if ((check.better || check.doubtful) && !detail::samePose(found.extrinsic, Pose())) {
       options.read->extrinsic = Pose();
       const detail::PoseCheck without = checkPoses(scans, options);
       fits_without_extrinsic = !without.better && !without.doubtful;
     }
   } catch (const FileError&) {
-    scans.keepForNextOpen(0);
     return {};  // the command reads the file again and reports it
   }
-  scans.keepForNextOpen(0);
   const std::string start = nameOf(scans) + ": neighbouring scans do not fit each other: ";
   const std::string end = ", or use --no-pose-check if the poses are right";
   if (fits_without_extrinsic)

@@ -175,7 +175,7 @@ void addRegister(CLI::App& app) {
   addPoseOptions(command, options->input);
   command.text("--tum", options->tum,
                "TUM file to write, one line per scan: time, x y z [m] qx qy qz qw; the time is that in the name of the "
-               "scan, or the last number in the name, or else 0, 1, 2 ...");
+               "scan, or else the number in its name, or else 0, 1, 2 ...");
   command.force(options->force, "replace an existing file of poses");
   command
       .number("--scan-resolution", options->options.resolution, 0.0, 1e6,

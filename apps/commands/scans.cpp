@@ -202,26 +202,17 @@ void print(const FoundScans& found, const Table& table, bool each) {
   }
 }
 
-/// Adds "of this table" to the warning about scans without a pose: pcd2map would not leave them out, but stop.
-void sayThatTheTableLeavesOut(std::vector<std::string>& warnings) {
-  const std::string end = "; left out";
-  for (std::string& warning : warnings)
-    if (warning.size() > end.size() && warning.compare(warning.size() - end.size(), end.size(), end) == 0)
-      warning += " of this table";
-}
-
 /// Prints the table. Throws std::runtime_error with the reason if pcd2map would stop.
 void run(const ScansCommand& command) {
   // Scans without a pose are listed first. Then the command fails, as pcd2map does.
   FindScansOptions options = findOptions(command.input);
   options.skip_without_pose = true;
   FoundScans found = findScans({command.input.paths.begin(), command.input.paths.end()}, options);
+  const PoseFinding finding = checkMeaning(found, command.input.meaning, impossibleConvention(command.input), 0);
   const Table table = tableOf(found.scans, detail::limitsOf(accumulateOptions(command.input, command.resolution, 1)));
   const bool would_stop = !found.without_pose.empty() && !command.input.skip_without_pose;
-  if (would_stop) sayThatTheTableLeavesOut(found.warnings);
   for (const std::string& warning : found.scans.coordinateWarnings(command.resolution))
     found.warnings.push_back(warning);
-  const PoseFinding finding = checkMeaning(found, command.input.meaning, impossibleConvention(command.input), 0);
   std::string fault = finding.fault;
   if (!finding.warning.empty()) found.warnings.push_back(finding.warning);
   if (would_stop) {

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "core/parallel.h"
+#include "core/same_pose.h"
 #include "registration/scan_surfaces.h"
 
 namespace gaussmap::detail {
@@ -35,10 +36,6 @@ constexpr double kOtherDirection = 0.766;  // cosine of 40 degrees
 
 constexpr std::size_t indexOf(PoseConvention convention) {
   return std::size_t(convention);  // the order of kPoseConventions
-}
-
-bool samePose(const Pose& a, const Pose& b) {
-  return a.translation == b.translation && a.rotation.coeffs() == b.rotation.coeffs();
 }
 
 using Duels = std::array<std::array<ConventionDuel, kConventions>, kConventions>;

@@ -34,7 +34,7 @@ class RegisterGuesses {
   /// Where the poses come from, one sentence.
   const std::string& description() const { return assigned_.description; }
   const std::vector<std::string>& warnings() const { return assigned_.warnings; }
-  /// Returns the time of each scan for a TUM file: the time in its name [s], or else the last number in its name. If a
+  /// Returns the time of each scan for a TUM file: the time in its name [s], or else the number in its name. If a
   /// name has no number, or two scans have the same one, returns 0, 1, 2 and so on.
   std::vector<double> times() const;
 

@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
-#include "io/files/text.h"
+#include "io/files/decimal.h"
 
 namespace gaussmap::detail {
 namespace {
@@ -23,28 +24,19 @@ struct Written {
 };
 
 Written writtenOf(std::string_view word) {
-  Written number;
-  if (!parseNumber(word, number.value) || !std::isfinite(number.value)) return {kExact, 0, 0.0, 0.0};
-  int decimals = 0, exponent = 0;
-  bool point = false;
-  std::size_t i = 0;
-  for (; i < word.size() && word[i] != 'e' && word[i] != 'E'; ++i) {
-    const char c = word[i];
-    if (c == '.') point = true;
-    if (c < '0' || c > '9') continue;
-    if (point) ++decimals;
-    if (c != '0' || number.digits > 0) ++number.digits;
-    number.zeros = c == '0' && number.digits > 0 ? number.zeros + 1 : 0;
-  }
-  if (i < word.size()) {
-    double written = 0.0;
-    parseNumber(word.substr(i + 1), written);
-    exponent = static_cast<int>(std::clamp(written, -400.0, 400.0));
-  } else if (point && number.zeros > 0) {
-    return {kExact, 0, 0.0, number.value};  // "455123.0": with a fixed number of decimals, or exact
-  }
-  number.step = std::pow(10.0, exponent - decimals);
-  return number;
+  const std::optional<Decimal> number = parseDecimal(word);
+  if (!number) return {kExact, 0, 0.0, 0.0};
+  const std::string digits = number->digits > 0 ? std::to_string(number->digits) : "";
+  const std::size_t last = digits.find_last_not_of('0');
+  Written written;
+  written.digits = static_cast<int>(digits.size());
+  written.zeros = last == std::string::npos ? 0 : static_cast<int>(digits.size() - last) - 1;
+  written.step = std::pow(10.0, number->exponent);
+  written.value = number->value();
+  // "455123.0" has a fixed number of decimals, or is exact.
+  if (number->exponent < 0 && written.zeros > 0 && word.find_first_of("eE") == std::string_view::npos)
+    written.digits = kExact;
+  return written;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <limits>
 #include <system_error>
 
+#include "core/same_pose.h"
 #include "io/scans/name_numbers.h"
 #include "io/scans/pose_times.h"
 #include "io/scans/scan_names.h"
@@ -72,10 +73,6 @@ std::string missingText(const MatchedPoses& matched, const std::vector<ScanKey>&
   return text + (count > kNamed ? " ..." : "");
 }
 
-bool isIdentity(const Pose& pose) {
-  return pose.translation.isZero(0.0) && pose.rotation.coeffs() == Pose::Rotation::Identity().coeffs();
-}
-
 bool isPlainKitti(const PoseFile& file) {
   return file.format == PoseFormat::Kitti && !file.by_name &&
          std::none_of(file.entries.begin(), file.entries.end(),
@@ -111,7 +108,7 @@ void readPoses(std::vector<ScanPose>& scans, const std::vector<ScanKey>& keys, c
     if (none || !options.skip_without_pose)
       throw FileError(file.path,
                       what + (none ? "; " + matched.how : "") + "; " + wayOut(file, matched, assigned.times));
-    assigned.warnings.push_back(file.path.string() + ": " + what + "; left out");
+    assigned.warnings.push_back(file.path.string() + ": " + what);
   }
   for (const MatchedPoses::Missing& missing : matched.missing) {
     assigned.left_out[missing.scan] = true;
@@ -145,7 +142,7 @@ AssignedPoses assignPoses(std::vector<ScanPose>& scans, const FindScansOptions& 
   else
     readPoses(scans, keys, options, assigned, extrinsic);
   for (const ScanPose& scan : scans) assigned.as_read.push_back(scan.pose);
-  const bool moves = extrinsic && !isIdentity(extrinsic->pose);
+  const bool moves = extrinsic && !samePose(extrinsic->pose, Pose());
   if (!moves && options.convention == PoseConvention::SensorToMap) return assigned;
   if (moves) assigned.extrinsic = extrinsic->pose;
   const Pose& sensor = assigned.extrinsic;

@@ -22,8 +22,8 @@ std::string numbersOnly(std::string_view text) {
 
 std::optional<Pose> poseOfNumbers(const PoseText& text, std::size_t line, const std::vector<double>& numbers) {
   if (numbers.size() == 12 || numbers.size() == 16) {
-    if (numbers.size() == 16 && !(numbers[12] == 0.0 && numbers[13] == 0.0 && numbers[14] == 0.0 && numbers[15] == 1.0))
-      text.fail(line, "expected 0 0 0 1 as the last row of a 4 x 4 matrix");
+    if (numbers.size() == 16)
+      if (const std::string fault = lastRowFault(numbers.data()); !fault.empty()) text.fail(line, fault);
     return poseOfMatrix(text, line, numbers.data());
   }
   if (numbers.size() != 7) return std::nullopt;

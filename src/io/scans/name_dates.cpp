@@ -2,7 +2,7 @@
 #include "io/scans/name_dates.h"
 
 #include <algorithm>
-#include <array>
+#include <ctime>
 #include <initializer_list>
 #include <string>
 
@@ -24,22 +24,23 @@ int numberIn(std::string_view digits, std::size_t first, std::size_t count) {
   return number;
 }
 
-/// Days since 1970-01-01 of a date of the Gregorian calendar, after 1970.
-int daysSince1970(int year, int month, int day) {
-  constexpr std::array<int, 12> kBefore = {0, 31, 59, 90, 120, 151, 181, 212, 243, 273, 304, 334};
-  const auto isLeap = [](int y) { return (y % 4 == 0 && y % 100 != 0) || y % 400 == 0; };
-  int days = kBefore[static_cast<std::size_t>(month - 1)] + day - 1 + (month > 2 && isLeap(year) ? 1 : 0);
-  for (int y = 1970; y < year; ++y) days += isLeap(y) ? 366 : 365;
-  return days;
-}
-
-/// Returns the seconds of the digits YYYYMMDDhhmmss; nullopt if they are not a date.
+/// Returns the seconds of the digits YYYYMMDDhhmmss; nullopt if they are not a date after 1980.
 std::optional<long long> secondsOfDate(std::string_view digits) {
-  const int year = numberIn(digits, 0, 4), month = numberIn(digits, 4, 2), day = numberIn(digits, 6, 2),
-            hour = numberIn(digits, 8, 2), minute = numberIn(digits, 10, 2), second = numberIn(digits, 12, 2);
-  if (year < 1980 || year > 2100 || month < 1 || month > 12 || day < 1 || day > 31) return std::nullopt;
-  if (hour > 23 || minute > 59 || second > 60) return std::nullopt;
-  return ((daysSince1970(year, month, day) * 24LL + hour) * 60 + minute) * 60 + second;
+  std::tm date{};
+  date.tm_year = numberIn(digits, 0, 4) - 1900;
+  date.tm_mon = numberIn(digits, 4, 2) - 1;
+  date.tm_mday = numberIn(digits, 6, 2);
+  date.tm_hour = numberIn(digits, 8, 2);
+  date.tm_min = numberIn(digits, 10, 2);
+  date.tm_sec = numberIn(digits, 12, 2);
+  const bool is_leap_second = date.tm_sec == 60;
+  if (date.tm_year < 80 || date.tm_year > 200) return std::nullopt;
+  std::tm same = date;
+  const std::time_t seconds = timegm(&same);  // carries numbers that are too large: the 31st of April is a day in May
+  if (!is_leap_second && (same.tm_mon != date.tm_mon || same.tm_mday != date.tm_mday || same.tm_hour != date.tm_hour ||
+                          same.tm_min != date.tm_min || same.tm_sec != date.tm_sec))
+    return std::nullopt;
+  return seconds;
 }
 
 bool isDateSeparator(char c) {

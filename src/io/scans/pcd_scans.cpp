@@ -11,6 +11,7 @@
 
 #include "io/scans/assign_poses.h"
 #include "io/scans/coordinate_checks.h"
+#include "io/scans/keeping_points.h"
 #include "io/scans/pose_checks.h"
 #include "io/scans/scan_names.h"
 #include "sensor/sensor_motion.h"
@@ -23,11 +24,12 @@ class detail::KeptReaders {
  public:
   using Reader = std::shared_ptr<const PcdReader>;
 
+  /// Further readers can take this many bytes.
   void allow(std::size_t bytes) {
     const std::lock_guard<std::mutex> lock(mutex_);
     budget_ = bytes;
   }
-  /// Returns the reader of a scan, which is not kept any more; nullptr if there is none.
+  /// Removes the kept reader of a scan and returns it; returns nullptr if none is kept.
   Reader take(std::size_t scan) {
     const std::lock_guard<std::mutex> lock(mutex_);
     const auto found = readers_.find(scan);
@@ -36,6 +38,7 @@ class detail::KeptReaders {
     readers_.erase(found);
     return reader;
   }
+  /// Keeps the reader of a scan if its points stay in memory and are within the limit.
   void keep(std::size_t scan, const Reader& reader) {
     const PcdHeader& header = reader->header();
     const std::size_t bytes = std::max(3 * sizeof(double), header.record_size) * header.points;  // at most
@@ -156,18 +159,15 @@ void warnOfScansGivenTwice(const std::vector<std::filesystem::path>& paths, std:
   }
 }
 
-constexpr std::size_t kKeptBytes = 64 << 20;
-
 /// Returns true if the points of scans with the same pose show that the sensor stood still.
 bool standsStill(PcdScans& scans) {
-  scans.keepForNextOpen(kKeptBytes);
-  std::optional<SameView> views;
+  const KeepingPoints keeping(scans);
   try {
-    views = compareViews(scans);
-  } catch (const FileError&) {  // a later read reports it
+    const std::optional<SameView> views = compareViews(scans);
+    return views && !views->moved();
+  } catch (const FileError&) {
+    return false;  // a later read reports it
   }
-  scans.keepForNextOpen(0);
-  return views && !views->moved();
 }
 
 }  // namespace

@@ -47,10 +47,9 @@ void requireMatrices(const PoseText& text, const BlockShape& shape) {
   if (shape.rows == 4 || elements.size() < 12) return;
   if (elements.size() == 16 && elements[3] == 0.0 && elements[7] == 0.0 && elements[11] == 0.0 && elements[15] == 1.0)
     text.fail(text.lines[first].number, lastRowFault(elements.data()));
-  const bool is_matrix = std::all_of(elements.begin(), elements.begin() + 12, [&elements](const double& value) {
-    const bool is_translation = (&value - elements.data()) % 4 == 3;
-    return is_translation || std::isnan(value) || std::abs(value) < 1.1;
-  });
+  bool is_matrix = true;  // the elements of a rotation are at most 1
+  for (std::size_t i = 0; i < 12; ++i)
+    if (i % 4 < 3 && std::abs(elements[i]) > 1.1) is_matrix = false;
   if (shape.before == 0 && !is_matrix)
     text.fail(text.lines[first].number,
               "4 numbers per line: no rotation, nor the rows of matrices; expected for example "

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "core/same_pose.h"
+
 #include "io/files/written_position.h"
 
 namespace gaussmap::detail {
@@ -14,10 +16,6 @@ constexpr double kFarthest = 1e8;
 constexpr const char* kWayOut =
     "Give each scan its pose in the VIEWPOINT of its header or with --poses FILE, or use --frame map if "
     "the points are already in the map frame.";
-
-bool samePose(const Pose& a, const Pose& b) {
-  return a.translation == b.translation && a.rotation.coeffs() == b.rotation.coeffs();
-}
 
 std::string describe(const Pose& pose) {
   std::ostringstream text;

@@ -16,10 +16,6 @@ using namespace detail;
 
 namespace {
 
-std::string nameOfEntry(const PoseFile::Entry& entry) {
-  return std::filesystem::path(entry.name).filename().string();
-}
-
 /// Returns true if no field of the first line is a number: the line names the columns.
 bool isHeader(const PoseText& text) {
   const std::vector<std::string_view> fields = fieldsOf(text, text.lines.front().text, false);
@@ -140,53 +136,6 @@ void requireDifferentNames(const PoseFile& file) {
   }
 }
 
-/// Finds the entry of a scan by its name.
-class NameIndex {
- public:
-  explicit NameIndex(const PoseFile& file) {
-    for (const PoseFile::Entry& entry : file.entries) {
-      if (entry.name.empty()) continue;
-      by_folder_.emplace(folderAndFileName(entry.name), &entry);
-      const auto [place, is_new] = entries_.emplace(nameOfEntry(entry), &entry);
-      if (!is_new) place->second = nullptr;  // only the folders tell these entries apart
-    }
-  }
-  /// Finds the entry with the name of the folder and the file, of the file, or of the folder (000000/cloud.pcd).
-  const PoseFile::Entry* find(const std::filesystem::path& scan) const {
-    if (const auto found = by_folder_.find(folderAndFileName(scan)); found != by_folder_.end()) return found->second;
-    for (const std::filesystem::path& name : {scan.filename(), scan.stem(), std::filesystem::path(scanStem(scan)),
-                                              scan.lexically_normal().parent_path().filename()})
-      if (const auto found = entries_.find(name.string()); found != entries_.end() && found->second != nullptr)
-        return found->second;
-    return nullptr;
-  }
-
- private:
-  std::unordered_map<std::string, const PoseFile::Entry*> by_folder_;
-  std::unordered_map<std::string, const PoseFile::Entry*> entries_;
-};
-
-Pose poseOfEntry(const PoseFile& file, const PoseFile::Entry& entry) {
-  if (!entry.pose) throw FileError(file.path, "line " + std::to_string(entry.line) + " has no pose (NaN)");
-  return *entry.pose;
-}
-
-std::vector<Pose> posesByName(const PoseFile& file, const NameIndex& index,
-                              const std::vector<std::filesystem::path>& scans) {
-  std::vector<Pose> poses;
-  std::unordered_map<const PoseFile::Entry*, std::filesystem::path> users;
-  for (const std::filesystem::path& scan : scans) {
-    const PoseFile::Entry* const entry = index.find(scan);
-    if (!entry) throw FileError(file.path, "no pose for the scan " + folderAndFileName(scan));
-    const auto [user, is_new] = users.emplace(entry, scan);
-    if (!is_new)
-      throw FileError(file.path, "line " + std::to_string(entry->line) + ": " + quote(entry->name) + " names both " +
-                                     user->second.string() + " and " + scan.string());
-    poses.push_back(poseOfEntry(file, *entry));
-  }
-  return poses;
-}
-
 }  // namespace
 
 PoseFile readPoseFile(const std::filesystem::path& path, PoseFormat format, const std::string& columns) {
@@ -224,24 +173,6 @@ PoseFile readPoseFile(const std::filesystem::path& path, PoseFormat format, cons
   if (file.format == PoseFormat::Automatic) file.format = PoseFormat::Matrix4;
   if (file.by_name) requireDifferentNames(file);
   return file;
-}
-
-std::vector<Pose> posesForScans(const PoseFile& file, const std::vector<std::filesystem::path>& scans) {
-  const NameIndex index(file);
-  bool by_name = file.by_name;
-  if (!by_name && !scans.empty()) {
-    by_name = true;
-    for (const std::filesystem::path& scan : scans) by_name = by_name && index.find(scan) != nullptr;
-  }
-  if (by_name) return posesByName(file, index, scans);
-
-  if (file.entries.size() != scans.size())
-    throw FileError(file.path, std::to_string(file.entries.size()) + " poses for " + std::to_string(scans.size()) +
-                                   " scans: give one line per scan in the order of the scans, or start each line with "
-                                   "the file name of its scan");
-  std::vector<Pose> poses;
-  for (const PoseFile::Entry& entry : file.entries) poses.push_back(poseOfEntry(file, entry));
-  return poses;
 }
 
 }  // namespace gaussmap

@@ -289,4 +289,22 @@ MatchedPoses matchPoses(const PoseFile& file, const std::vector<ScanKey>& scans,
   return matched;
 }
 
+std::vector<Pose> posesForScans(const PoseFile& file, const std::vector<std::filesystem::path>& scans) {
+  std::vector<ScanKey> keys;
+  keys.reserve(scans.size());
+  for (const std::filesystem::path& scan : scans) keys.push_back({scan.string(), std::nullopt});
+  const EntriesByName entries(file);
+  const bool all_named =
+      std::all_of(keys.begin(), keys.end(), [&](const ScanKey& key) { return entries.find(key.name) != nullptr; });
+  PoseMatching options;
+  options.match = file.by_name || all_named ? PoseMatch::Name : PoseMatch::Order;
+  const MatchedPoses matched = matchPoses(file, keys, options);
+  if (!matched.missing.empty())
+    throw FileError(file.path, keys[matched.missing[0].scan].name + " has no pose: " + matched.missing[0].reason);
+  std::vector<Pose> poses;
+  poses.reserve(scans.size());
+  for (const std::optional<Pose>& pose : matched.poses) poses.push_back(*pose);
+  return poses;
+}
+
 }  // namespace gaussmap

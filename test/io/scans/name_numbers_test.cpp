@@ -117,6 +117,8 @@ TEST(NameNumbers, TakeOneDateOfAllNamesForTheNameOfTheLog) {
   EXPECT_EQ(timesOf({"20231114_221320_1700000000.5.pcd", "20231114_221320_1700000001.5.pcd"}),
             (std::vector<std::int64_t>{1700000000500000000, 1700000001500000000}));
   EXPECT_FALSE(numbersIn({"20239914_221320.pcd", "20239914_221321.pcd"}).dates);  // no such month
+  EXPECT_FALSE(numbersIn({"20230229_221320.pcd", "20230229_221321.pcd"}).dates);  // no such day in 2023
+  EXPECT_TRUE(numbersIn({"20240229_221320.pcd", "20240229_221321.pcd"}).dates);
 }
 
 TEST(NameNumbers, ReadTheNumberThatDiffers) {

@@ -52,9 +52,8 @@ class GAUSSMAP_API PcdScans : public Scans {
   /// Returns a reader of a file, for access to its header, records and columns. Throws like open().
   PcdReader reader(std::size_t index) const;
 
-  /// Keeps the points of ascii and compressed files that are opened from now on, until the same file is opened again,
-  /// but at most this many bytes in all. So a look at some scans before all scans are read costs little. 0: keeps no
-  /// more.
+  /// From now on, keeps the points of each opened ascii or compressed file until the file is opened again, at most
+  /// `bytes` in all. A program can then look at some scans before it reads all of them, at little cost. 0 = stop.
   void keepForNextOpen(std::size_t bytes);
 
   /// Returns warnings about the coordinates of the points that were read so far: floats that are too coarse for cells
@@ -110,8 +109,8 @@ struct FoundScans {
   std::vector<std::string> warnings;      ///< one or two sentences each, with file names and what to do
   std::string poses;                      ///< where the poses come from and how they were matched, one sentence
   std::vector<std::string> without_pose;  ///< the scans that were left out, with the reason
-  std::vector<Pose> poses_as_read;        ///< per scan: before its convention and the extrinsic were applied
-  Pose extrinsic;                         ///< that was applied: pose of the sensor in the frame of the poses
+  std::vector<Pose> poses_as_read;        ///< per scan: the pose as read, before convention and extrinsic
+  Pose extrinsic;                         ///< the extrinsic that was applied; the identity if none was
 };
 
 /// Lists the scans (see listScans()), assigns the poses, and checks them.
