@@ -94,7 +94,10 @@ PoseFinding checkMeaning(FoundScans& found, const PoseMeaning& meaning, std::opt
   const std::string start = nameOf(scans) + ": neighbouring scans do not fit each other: ";
   const std::string end = ", or use --no-pose-check if the poses are right";
   if (fits_without_extrinsic)
-    return {start + "they do without the extrinsic, so the poses are those of the sensor; use --extrinsic none" + end,
+    return {nameOf(scans) +
+                ": neighbouring scans fit each other only without the extrinsic, so the poses may already be "
+                "those of the sensor; use --extrinsic none" +
+                end,
             ""};
   if (check.better) {
     const auto& duel = check.duel;
@@ -108,7 +111,7 @@ PoseFinding checkMeaning(FoundScans& found, const PoseMeaning& meaning, std::opt
   const detail::ConventionFit& fit = check.fits[std::size_t(check.given)];
   return {"", start + "only " + std::to_string(fit.on) + " of " + std::to_string(fit.met) +
                   " pieces of surface lie on the next scan. The poses may be wrong, for example their times, units or "
-                  "sensor; see Wrong poses in the documentation of scans and poses"};
+                  "sensor; see \"Wrong poses\" in docs/scans-and-poses.md"};
 }
 
 }  // namespace gaussmap::app

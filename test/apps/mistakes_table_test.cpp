@@ -217,7 +217,7 @@ const std::vector<Row>& rows() {
            return pose;
          }));
        }},
-      {"they do without the extrinsic",
+      {"fit each other only without the extrinsic",
        [](const T& t) {
          return t.build(t.scans(), {"--extrinsic", "0.3 0.1 0 0 0 0.5 0.8660254"});
        }},

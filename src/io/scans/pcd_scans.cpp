@@ -24,7 +24,7 @@ class detail::KeptReaders {
  public:
   using Reader = std::shared_ptr<const PcdReader>;
 
-  /// Further readers can take this many bytes.
+  /// Limits the memory of the points of readers that are kept from now on [bytes].
   void allow(std::size_t bytes) {
     const std::lock_guard<std::mutex> lock(mutex_);
     budget_ = bytes;

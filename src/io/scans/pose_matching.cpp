@@ -173,7 +173,8 @@ void matchByIndex(const PoseFile& file, const std::vector<ScanKey>& scans, const
     matched.how += " (the file has indices " + std::to_string(lowest) + " to " + std::to_string(highest) + ")";
 }
 
-/// The entries in the order of their keys, which have a name for messages.
+/// Returns the entries in the order of their keys. `name`: of the keys, for messages. `sort`: false keeps the order of
+/// the file, with a warning if it is another one.
 template <typename KeyOf>
 std::vector<std::size_t> orderOfKeys(const PoseFile& file, bool sort, const std::string& name, const KeyOf& keyOf,
                                      MatchedPoses& matched) {
@@ -201,8 +202,8 @@ std::vector<std::size_t> orderOfKeys(const PoseFile& file, bool sort, const std:
   return order;
 }
 
-/// The entries in the order of their times or indices, if all have one and `sort` is set; else in the order of the
-/// file.
+/// Returns the entries in the order of their times or indices, if all have one and `sort` is set; otherwise in the
+/// order of the file.
 std::vector<std::size_t> orderOfEntries(const PoseFile& file, bool sort, MatchedPoses& matched) {
   if (hasTimes(file))
     return orderOfKeys(
