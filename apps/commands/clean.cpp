@@ -211,7 +211,7 @@ void run(CleanCommand command) {
   evidence.min_range = input.min_range;
   evidence.crop = input.crop;
   evidence.visibility.noise = depthNoise(command.depth_noise);
-  const auto files = std::make_shared<const FileScans>(openScans(command.input, evidence.threads, "clean"));
+  const auto files = std::make_shared<const FileScans>(openScans(command.input, evidence.threads, "command clean"));
   const FileScans& scans = *files;
   if (scans.size() == 1)
     throw FileError(scans.files()[0].path,

@@ -43,7 +43,7 @@ void run(const Pcd2mapOptions& options) {
 
   accumulateOptions(options.input, options.map.resolution, 0);  // checks the options before files are read
   const FileScans scans =
-      openScans(options.input, options.budget.refine.threads, options.online.on ? "--online" : nullptr);
+      openScans(options.input, options.budget.refine.threads, options.online.on ? "option --online" : nullptr);
   noteDroppedFields(scans);
   const AccumulateOptions reading =
       accumulateOptions(options.input, options.map.resolution, options.budget.refine.threads);

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "commands/scan_input.h"
+#include "core/same_pose.h"
+#include "io/scans/keeping_points.h"
 #include "registration/pose_check.h"
 
 namespace gaussmap::app {
@@ -19,8 +21,6 @@ const std::map<std::string, PoseConvention> kConventionNames = {{"sensor-to-map"
                                                                 {"w-last", PoseConvention::WLast},
                                                                 {"camera", PoseConvention::Camera},
                                                                 {"optical", PoseConvention::Optical}};
-
-constexpr std::size_t kKeptBytes = 64 << 20;
 
 /// Returns what is wrong with the poses if `better` is right: "if the poses are inverse (map to sensor)".
 std::string conditionOf(PoseConvention better) {
@@ -46,12 +46,11 @@ std::string conditionOf(PoseConvention better) {
 /// Returns what to do: "use --frame map".
 std::string adviceFor(PoseConvention better, bool in_map_frame, PoseConvention given) {
   if (better == PoseConvention::NoMotion) return "use --frame map";
-  const std::string frame = in_map_frame ? "without --frame map" : "";
+  if (in_map_frame && better == given) return "run the command without --frame map";
   if (better == PoseConvention::SensorToMap)
-    return "run the command " +
-           (in_map_frame && given == PoseConvention::SensorToMap ? frame : "without --pose-convention");
+    return std::string("run the command without ") + (in_map_frame ? "--frame map and " : "") + "--pose-convention";
   for (const auto& [name, convention] : kConventionNames)
-    if (convention == better) return "use --pose-convention " + name + (frame.empty() ? "" : ", " + frame);
+    if (convention == better) return "use --pose-convention " + name + (in_map_frame ? " without --frame map" : "");
   return "";
 }
 
@@ -70,30 +69,49 @@ void addPoseMeaning(Command& command, PoseMeaning& meaning) {
       .rare();
 }
 
-std::string faultOfPoses(FoundScans& found, PoseConvention convention, int threads) {
+PoseFinding checkMeaning(FoundScans& found, const PoseMeaning& meaning, std::optional<PoseConvention> never,
+                         int threads) {
+  if (!meaning.check) return {};
   FileScans& scans = found.scans;
   detail::PoseCheckOptions options;
-  options.convention = convention;
+  options.convention = meaning.convention;
+  options.never = never;
   options.threads = threads;
   options.read = {found.poses_as_read, found.extrinsic};
   detail::PoseCheck check;
-  scans.keepForNextOpen(kKeptBytes);  // the command reads these scans again
+  bool fits_without_extrinsic = false;
   try {
+    const detail::KeepingPoints keeping(scans);  // the command reads these scans again
     check = checkPoses(scans, options);
+    if ((check.better || check.doubtful) && !detail::samePose(found.extrinsic, Pose())) {
+      options.read->extrinsic = Pose();
+      const detail::PoseCheck without = checkPoses(scans, options);
+      fits_without_extrinsic = !without.better && !without.doubtful;
+    }
   } catch (const FileError&) {
-    scans.keepForNextOpen(0);
-    return "";  // the command reads the file again and reports it
+    return {};  // the command reads the file again and reports it
   }
-  scans.keepForNextOpen(0);
-  if (!check.better) return "";
-  const auto of = [&](std::size_t fitting) {
-    return std::to_string(fitting) + " of " + std::to_string(check.duel.pieces);
-  };
-  return nameOf(scans) + ": neighbouring scans do not fit each other: " + of(check.duel.first_only + check.duel.both) +
-         " pieces of surface lie on the next scan, but " + std::to_string(check.duel.other_only + check.duel.both) +
-         " " + conditionOf(*check.better) + "; " +
-         adviceFor(*check.better, scans.frame() == ScanFrame::Map, convention) +
-         ", or --no-pose-check if the poses are right";
+  const std::string start = nameOf(scans) + ": neighbouring scans do not fit each other: ";
+  const std::string end = ", or use --no-pose-check if the poses are right";
+  if (fits_without_extrinsic)
+    return {nameOf(scans) +
+                ": neighbouring scans fit each other only without the extrinsic, so the poses may already be "
+                "those of the sensor; use --extrinsic none" +
+                end,
+            ""};
+  if (check.better) {
+    const auto& duel = check.duel;
+    return {start + std::to_string(duel.first_only + duel.both) + " of " + std::to_string(duel.pieces) +
+                " pieces of surface lie on the next scan, but " + std::to_string(duel.other_only + duel.both) + " " +
+                conditionOf(*check.better) + "; " +
+                adviceFor(*check.better, scans.frame() == ScanFrame::Map, meaning.convention) + end,
+            ""};
+  }
+  if (!check.doubtful) return {};
+  const detail::ConventionFit& fit = check.fits[std::size_t(check.given)];
+  return {"", start + "only " + std::to_string(fit.on) + " of " + std::to_string(fit.met) +
+                  " pieces of surface lie on the next scan. The poses may be wrong, for example their times, units or "
+                  "sensor; see \"Wrong poses\" in docs/scans-and-poses.md"};
 }
 
 }  // namespace gaussmap::app

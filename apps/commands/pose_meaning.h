@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "common/command.h"
@@ -16,11 +17,15 @@ struct PoseMeaning {
 /// Adds --pose-convention and --no-pose-check.
 void addPoseMeaning(Command& command, PoseMeaning& meaning);
 
-/// Checks what the poses of scans mean, see detail::checkPoses().
-///
-/// Returns a message with the option to use if neighbouring scans fit each other clearly better with another
-/// convention, or with points in another frame; otherwise "". `convention`: of the poses, as the program was
-/// told. `threads`: 0 = all cores.
-std::string faultOfPoses(FoundScans& found, PoseConvention convention, int threads);
+/// What the check of poses found. Both texts are empty if the scans fit each other.
+struct PoseFinding {
+  std::string fault;    ///< the poses mean something else; the text names the option to use
+  std::string warning;  ///< the scans do not fit each other, and no other meaning of the poses explains it
+};
+
+/// Checks what the poses of scans mean, see detail::checkPoses(). `never`: a convention that the poses cannot have, or
+/// std::nullopt. `threads`: 0 = all cores.
+PoseFinding checkMeaning(FoundScans& found, const PoseMeaning& meaning, std::optional<PoseConvention> never,
+                         int threads);
 
 }  // namespace gaussmap::app

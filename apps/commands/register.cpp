@@ -28,15 +28,17 @@ const Help kRegisterHelp = {
 The fitness is the share of the scan that lies on the map, from 0 to 1. "degenerate" means that some direction is
 unobservable, for example along a corridor.
 
-The search for a scan starts at its own pose, from --poses or the VIEWPOINT in its header. If nothing of the scan lies
-on the map from there, or with --guess, the search starts at the pose found for the scan before, moved by the motion
-between the own poses of the two scans. VIEWPOINTs that are all the same, or the identity, are no own poses: the search
-then starts at the pose found for the scan before.
+The search for a scan starts at its own pose, from --poses or the VIEWPOINT in its header. If no part of the scan lies
+on the map from there, it starts again from the pose found for the scan before, moved by the motion between the own
+poses of the two scans. With --guess, the first scan starts at the guess, and each other scan starts from the scan
+before in this way. VIEWPOINTs that are the same for all scans, or the identity for several scans, are no own poses.
+A scan without an own pose starts at the pose found for the scan before.
 
-A scan that is not found is named on stderr, the others are registered, and the exit code is 1.
+A scan without usable points, a damaged file, or a scan that is not found on the map, gets a line on stderr, and the
+others are registered. The exit code is then 1.
 
-Maps can be given in place of scans. If the first input is a map and there is no --guess, its search starts at the
-identity: the map is not moved.)"};
+Maps can be given in place of scans. A map in place of a scan starts at the identity (it is not moved), unless --guess
+or --poses is given.)"};
 
 struct RegisterCommand {
   std::vector<std::string> inputs;  // scans or maps; the last one is the map to register with
@@ -99,7 +101,7 @@ RegistrationResult findScan(const std::filesystem::path& path, const GaussianMap
     RegistrationResult result = registerFile(path, map, guess, command);
     if (result.fitness > 0.0) return result;
   }
-  throw FileError(path, "no part of it lies on the map after the search; use a better --guess, or --poses");
+  throw FileError(path, "no part of the scan lies on the map after the search; use a better --guess or --poses");
 }
 
 /// Below this fitness the program says that the pose may be wrong. Measured: right poses of scans of a mapped place
@@ -155,7 +157,7 @@ void run(const RegisterCommand& command) {
   if (command.json) printJson(all);
   if (not_found > 0)
     throw std::runtime_error(std::to_string(not_found) + " of " + std::to_string(scans.size()) +
-                             " scans were not registered, see above");
+                             (not_found == 1 ? " scans was" : " scans were") + " not registered, see above");
 }
 
 }  // namespace
@@ -173,7 +175,7 @@ void addRegister(CLI::App& app) {
   addPoseOptions(command, options->input);
   command.text("--tum", options->tum,
                "TUM file to write, one line per scan: time, x y z [m] qx qy qz qw; the time is that in the name of the "
-               "scan, or its number");
+               "scan, or else the number in its name, or else 0, 1, 2 ...");
   command.force(options->force, "replace an existing file of poses");
   command
       .number("--scan-resolution", options->options.resolution, 0.0, 1e6,

@@ -34,9 +34,11 @@ void addPoseOptions(Command& command, ScanInput& input) {
       .rare();
   command
       .number("--max-time-gap", input.max_time_gap, 0.0, 1e9,
-              "largest time between a scan and its pose [s]; default: half of the median time between scans")
+              "largest time between a scan and its pose [s]; default: half of the median time between scans (for one "
+              "scan: between poses)")
       .rare();
-  command.flag("--interpolate", input.interpolate, "interpolate between the two poses nearest in time").rare();
+  command.flag("--interpolate", input.interpolate, "interpolate between the pose before and the pose after the scan")
+      .rare();
   command.flag("--skip-without-pose", input.skip_without_pose, "leave out scans without a pose").rare();
   command
       .text("--extrinsic", input.extrinsic,
@@ -141,14 +143,19 @@ FindScansOptions findOptions(const ScanInput& input) {
   return options;
 }
 
+std::optional<PoseConvention> impossibleConvention(const ScanInput& input) {
+  // VIEWPOINT is read as w x y z.
+  return input.poses.empty() ? std::optional(PoseConvention::WFirst) : std::nullopt;
+}
+
 FileScans openScans(const ScanInput& input, int threads, const char* follows_rays) {
   FoundScans found = findScans({input.paths.begin(), input.paths.end()}, findOptions(input));
   if (follows_rays) requireSensorPositions(found.scans, follows_rays);
   if (!input.poses.empty()) note(found.poses);
   for (const std::string& warning : found.warnings) warn(warning);
-  if (input.meaning.check)
-    if (const std::string fault = faultOfPoses(found, input.meaning.convention, threads); !fault.empty())
-      throw std::runtime_error(fault);
+  const PoseFinding finding = checkMeaning(found, input.meaning, impossibleConvention(input), threads);
+  if (!finding.fault.empty()) throw std::runtime_error(finding.fault);
+  if (!finding.warning.empty()) warn(finding.warning);
   return std::move(found.scans);
 }
 

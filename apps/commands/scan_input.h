@@ -40,9 +40,12 @@ void addRangeOptions(Command& command, ScanInput& input);
 
 /// Throws UsageError if an option does not make sense.
 FindScansOptions findOptions(const ScanInput& input);
+/// Returns a convention that the poses cannot have, because of the way in which they are read.
+std::optional<PoseConvention> impossibleConvention(const ScanInput& input);
 /// Calls findScans(). Prints its warnings on stderr, and, with a pose file, how the poses were found. For a command
-/// that follows the rays of the sensor, `follows_rays` is its name; the function then calls requireSensorPositions()
-/// first. Throws like these functions, and std::runtime_error if the check of poses finds a fault, see faultOfPoses().
+/// that follows the rays of the sensor, `follows_rays` names it ("command clean"); the function then calls
+/// requireSensorPositions() first. Throws like these functions, and std::runtime_error if the check of poses finds a
+/// fault, see checkMeaning().
 FileScans openScans(const ScanInput& input, int threads, const char* follows_rays = nullptr);
 /// Prints warnings about the coordinates that were read, see FileScans::coordinateWarnings(). Call it after reading.
 void warnOfCoordinates(const FileScans& scans, double resolution);

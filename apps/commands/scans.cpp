@@ -204,15 +204,17 @@ void run(const ScansCommand& command) {
   FindScansOptions options = findOptions(command.input);
   options.skip_without_pose = true;
   FoundScans found = findScans({command.input.paths.begin(), command.input.paths.end()}, options);
+  const PoseFinding finding = checkMeaning(found, command.input.meaning, impossibleConvention(command.input), 0);
   const Table table = tableOf(found.scans, detail::limitsOf(accumulateOptions(command.input, command.resolution, 1)));
+  const bool would_stop = !found.without_pose.empty() && !command.input.skip_without_pose;
   for (const std::string& warning : found.scans.coordinateWarnings(command.resolution))
     found.warnings.push_back(warning);
-  std::string fault;
-  if (command.input.meaning.check) fault = faultOfPoses(found, command.input.meaning.convention, 0);
-  if (!found.without_pose.empty() && !command.input.skip_without_pose) {
+  std::string fault = finding.fault;
+  if (!finding.warning.empty()) found.warnings.push_back(finding.warning);
+  if (would_stop) {
     const std::size_t missing = found.without_pose.size(), all = found.scans.size() + missing;
     fault = command.input.poses + ": " + std::to_string(missing) + " of " + std::to_string(all) +
-            (missing == 1 ? " scans has" : " scans have") +
+            (all == 1 ? " scan" : " scans") + (missing == 1 ? " has" : " have") +
             " no pose, so pcd2map would stop; use --skip-without-pose to leave such scans out";
   }
   if (command.json)

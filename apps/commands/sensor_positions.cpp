@@ -13,7 +13,7 @@
 namespace gaussmap::app {
 using namespace detail;
 
-void requireSensorPositions(const Scans& scans, const char* command) {
+void requireSensorPositions(const Scans& scans, const char* follower) {
   const std::optional<SameView> worst = compareViews(scans);
   if (!worst || !worst->moved()) return;
   const auto fileOf = [&](std::size_t index) {
@@ -23,7 +23,7 @@ void requireSensorPositions(const Scans& scans, const char* command) {
   std::ostringstream text;
   text << nameOf(scans) << ": all scans have the sensor position (" << position.x() << " " << position.y() << " "
        << position.z() << "), but their points show that the sensor moved, for example between " << fileOf(worst->first)
-       << " and " << fileOf(worst->second) << ". " << command
+       << " and " << fileOf(worst->second) << ". The " << follower
        << " follows the rays from the sensor to the points: give the poses of the sensor with --poses FILE"
        << (scans.frame() == ScanFrame::Sensor ? ", and --frame map if the points are in the map frame already" : "");
   throw std::runtime_error(text.str());

@@ -6,7 +6,7 @@
 namespace gaussmap::app {
 
 /// Checks scans for a command that follows the rays of the sensor. Throws std::runtime_error if all scans have the same
-/// sensor position, but their points show that the sensor moved. `command` is used in the message.
-void requireSensorPositions(const Scans& scans, const char* command);
+/// sensor position, but their points show that the sensor moved. `follower` is used in the message: "command clean".
+void requireSensorPositions(const Scans& scans, const char* follower);
 
 }  // namespace gaussmap::app

@@ -24,8 +24,8 @@ const Help kTilesHelp = {
     "Convert a map to PCD tiles with an index for Autoware, or such tiles to a map",
     "gaussmap tiles street.gmap -o tiles && gaussmap tiles tiles -o back.gmap",
     R"(Writes tile_X_Y.pcd for every square of --size metres, and pointcloud_map_metadata.yaml with the lower corner of
-each tile: the layout of Autoware's dynamic map loading. x y z are the means of the finest scale, and the other
-fields are those of gaussmap export. Far from the origin, where floats would lose a thousandth of a cell, x y z are
+each tile: the layout of Autoware's dynamic map loading. x y z are the means of the Gaussians, and the other fields
+are those of gaussmap export. Far from the origin, where floats would lose a thousandth of a cell, x y z are
 doubles. Autoware reads only floats: move the map to an origin near it with gaussmap transform, or use --floats.
 
 If the input is a directory of tiles, the command writes a map. If the tiles contain only the finest scale, the map
@@ -39,7 +39,7 @@ void warnOfPrecision(const std::string& folder, const WrittenTiles& tiles, const
          "; Autoware and PCL's point types read only floats: move the map to an origin near it with gaussmap "
          "transform, or use --floats");
   else if (tiles.rounding > 1e-3 * map.grid().side(0))
-    warn(folder + ": x y z are floats, rounded by " + rounded + " (the cells have " +
+    warn(folder + ": x y z are floats, rounded by " + rounded + " (the side of a cell is " +
          formatted("%g m", map.grid().side(0)) + ")");
 }
 

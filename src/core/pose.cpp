@@ -9,6 +9,14 @@
 namespace gaussmap {
 using namespace detail;
 
+namespace {
+
+// Rounding to two decimals changes the norm of a unit quaternion by at most 0.01. Above twice this, rounding is not the
+// cause.
+constexpr double kRounded = 0.02;
+
+}  // namespace
+
 std::string poseFault(const Pose& pose) {
   std::ostringstream text;
   const Eigen::Vector3d& t = pose.translation;
@@ -22,7 +30,8 @@ std::string poseFault(const Pose& pose) {
     text << "the quaternion is zero: use w = 1, x = y = z = 0 for no rotation";
   } else if (!(std::abs(norm - 1.0) <= kQuaternionTolerance)) {
     text << "the quaternion (w " << q.w() << ", x " << q.x() << ", y " << q.y() << ", z " << q.z() << ") has norm "
-         << norm << " instead of 1: check the order of its numbers";
+         << norm << " instead of 1: check the order of its numbers"
+         << (std::abs(norm - 1.0) < kRounded ? ", or give more digits" : "");
   }
   return text.str();
 }

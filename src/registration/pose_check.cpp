@@ -12,6 +12,7 @@
 #include <string>
 
 #include "core/parallel.h"
+#include "core/same_pose.h"
 #include "registration/scan_surfaces.h"
 
 namespace gaussmap::detail {
@@ -25,16 +26,16 @@ constexpr double kClearOffset = 3.0;    // two places differ, in units of that d
 // A piece counts if the offset along its normal is at least this part of the whole offset. Without this limit, the
 // errors of odometry would decide about the floor, whose distance from the sensor never changes.
 constexpr double kClearPart = 0.25;
-constexpr double kBody = 0.6;              // range in which a sensor can see its carrier, as a part of the radius
+constexpr double kBody = 0.6;  // range in which a sensor can see its carrier, as a part of the radius
+// Share of the pieces on surfaces. Measured for right poses: 0.74 or more on 15 sequences, see gaussmap_benchmark
+// pose-check; for right alternatives 0.62 or more.
+constexpr double kGoodFit = 0.6, kBadFit = 0.5;
+constexpr std::size_t kFewestMet = 100;    // pieces, to say that scans do not fit
 constexpr double kSameDirection = 0.906;   // cosine of 25 degrees
 constexpr double kOtherDirection = 0.766;  // cosine of 40 degrees
 
 constexpr std::size_t indexOf(PoseConvention convention) {
   return std::size_t(convention);  // the order of kPoseConventions
-}
-
-bool samePose(const Pose& a, const Pose& b) {
-  return a.translation == b.translation && a.rotation.coeffs() == b.rotation.coeffs();
 }
 
 using Duels = std::array<std::array<ConventionDuel, kConventions>, kConventions>;
@@ -79,16 +80,21 @@ double sideOf(const Surface& surface, const ScanSurfaces& scan) {
   return scan.finest() * double(1 << surface.level);
 }
 
-/// Returns true if the piece, moved by `motion`, lies on a surface of `target`.
-bool liesOn(const Surface& piece, double side, const Pose& motion, const Eigen::Matrix3d& rotation,
-            const ScanSurfaces& target) {
+/// Where a piece lies in another scan.
+enum class Place { Empty, Beside, On };
+
+/// Returns where the piece, moved by `motion`, lies in `target`.
+Place placeOf(const Surface& piece, double side, const Pose& motion, const Eigen::Matrix3d& rotation,
+              const ScanSurfaces& target) {
   const Eigen::Vector3d mean = rotation * piece.mean + motion.translation;
   const Eigen::Vector3d normal = rotation * piece.normal;
   const Eigen::Vector3d along = target.planar() ? Eigen::Vector3d(rotation * piece.normal.cross(piece.across)) : normal;
+  Place place = Place::Empty;
   for (int level = std::max(0, piece.level - 2); level <= std::min(ScanSurfaces::kLevels - 1, piece.level + 1);
        ++level) {
     const Surface* const surface = target.at(mean, level);
     if (surface == nullptr) continue;
+    place = Place::Beside;
     const double limit =
         kSlack * std::max(side, sideOf(*surface, target)) + 2.0 * std::hypot(piece.thickness, surface->thickness);
     const Eigen::Vector3d offset = mean - surface->mean;
@@ -96,9 +102,9 @@ bool liesOn(const Surface& piece, double side, const Pose& motion, const Eigen::
         target.planar() ? Eigen::Vector3d(surface->normal.cross(surface->across)) : surface->normal;
     if (std::abs(along.dot(direction)) < kSameDirection) continue;
     if (std::abs(offset.dot(surface->normal)) > limit || std::abs(offset.dot(surface->across)) > limit) continue;
-    return true;
+    return Place::On;
   }
-  return false;
+  return place;
 }
 
 /// Returns true if two motions put the piece at clearly different places: not onto the same plane.
@@ -121,19 +127,31 @@ bool staysInPlane(const Surface& piece, double side, const Pose& motion) {
          std::abs((motion.rotation * piece.across).dot(piece.across)) > kSameDirection;
 }
 
+/// What one pair of scans says.
+struct PairResult {
+  Duels duels;
+  std::array<ConventionFit, kConventions> fits;
+};
+
 /// Adds the duels of the pieces of `source` on `target`. `motions`: of the points of `source` into the frame of
 /// `target`, per convention.
 void addDuels(const ScanSurfaces& source, const ScanSurfaces& target, const std::array<Pose, kConventions>& motions,
-              std::size_t given, Duels& duels) {
+              std::size_t given, PairResult& result) {
   std::array<Eigen::Matrix3d, kConventions> rotations;
   for (std::size_t c = 0; c < kConventions; ++c) rotations[c] = motions[c].rotation.toRotationMatrix();
   for (const Surface& piece : source.surfaces()) {
     if (piece.covered) continue;
     const double side = sideOf(piece, source);
     std::array<bool, kConventions> fits;
-    for (std::size_t c = 0; c < kConventions; ++c) fits[c] = liesOn(piece, side, motions[c], rotations[c], target);
     // The body of the robot moves with the sensor.
     const bool carried = piece.mean.norm() < kBody * source.finest() / kFinest;
+    for (std::size_t c = 0; c < kConventions; ++c) {
+      const Place place = placeOf(piece, side, motions[c], rotations[c], target);
+      fits[c] = place == Place::On;
+      if (carried) continue;
+      result.fits[c].met += place != Place::Empty;
+      result.fits[c].on += fits[c];
+    }
     // The slices of a planar laser that moves out of its plane look alike, but show different places.
     const bool slices = source.planar() && !staysInPlane(piece, side, motions[given]);
     for (std::size_t a = 0; a < kConventions; ++a)
@@ -142,8 +160,9 @@ void addDuels(const ScanSurfaces& source, const ScanSurfaces& target, const std:
         if (carried && (a == kNoMotion || b == kNoMotion)) continue;
         if (slices && ((a == given && b == kNoMotion) || (b == given && a == kNoMotion))) continue;
         for (const auto& [first, other] : {std::pair(a, b), std::pair(b, a)})
-          duels[first][other] += {1, std::size_t(fits[first] && !fits[other]), std::size_t(fits[other] && !fits[first]),
-                                  std::size_t(fits[first] && fits[other])};
+          result.duels[first][other] +=
+              {1, std::size_t(fits[first] && !fits[other]), std::size_t(fits[other] && !fits[first]),
+               std::size_t(fits[first] && fits[other])};
       }
   }
 }
@@ -156,13 +175,15 @@ bool winsClearly(const ConventionDuel& duel, std::size_t pairs) {
   return share >= (pairs > 1 ? 0.05 : 0.08) && duel.other_only >= margin * duel.first_only + 8;
 }
 
-std::optional<std::size_t> betterThan(std::size_t given, const std::vector<Duels>& per_pair, const Duels& sum) {
+/// Returns the convention that wins against the given one. `never`: a convention that the poses cannot have.
+std::optional<std::size_t> betterThan(std::size_t given, const std::vector<PairResult>& per_pair, const Duels& sum,
+                                      const std::vector<ConventionFit>& fits, std::optional<PoseConvention> never) {
   std::optional<std::size_t> best;
   for (std::size_t c = 0; c < kConventions; ++c) {
-    if (c == given) continue;
+    if (c == given || kPoseConventions[c] == never || fits[c].share() < kGoodFit) continue;
     std::size_t told = 0, won = 0;
-    for (const Duels& duels : per_pair) {
-      const ConventionDuel& duel = duels[given][c];
+    for (const PairResult& pair : per_pair) {
+      const ConventionDuel& duel = pair.duels[given][c];
       if (duel.first_only + duel.other_only < 5) continue;
       ++told;
       won += duel.other_only > 2 * duel.first_only;
@@ -172,7 +193,8 @@ std::optional<std::size_t> betterThan(std::size_t given, const std::vector<Duels
       return sum[c][other].other_only > sum[c][other].first_only + sum[c][other].pieces / 20;
     };
     bool lost = false;
-    for (std::size_t other = 0; other < kConventions; ++other) lost = lost || (other != c && loses(other));
+    for (std::size_t other = 0; other < kConventions; ++other)
+      lost = lost || (other != c && kPoseConventions[other] != never && loses(other));
     // The first of two conventions that the scans hardly distinguish stays.
     if (!lost && (!best || sum[*best][c].other_only > sum[*best][c].first_only + sum[*best][c].pieces / 100)) best = c;
   }
@@ -228,7 +250,7 @@ PoseCheck checkPoses(const Scans& scans, const PoseCheckOptions& options) {
   });
 
   const std::size_t given = indexOf(result.given);
-  std::vector<Duels> per_pair(pairs.size());
+  std::vector<PairResult> per_pair(pairs.size());
   parallelFor(pairs.size(), options.threads, 1, [&](std::size_t i) {
     const auto [to, from] = pairs[i];
     const ScanSurfaces& a = surfaces[std::size_t(std::lower_bound(used.begin(), used.end(), to) - used.begin())];
@@ -243,14 +265,20 @@ PoseCheck checkPoses(const Scans& scans, const PoseCheckOptions& options) {
     addDuels(a, b, back, given, per_pair[i]);
   });
   Duels sum;
-  for (const Duels& duels : per_pair)
-    for (std::size_t a = 0; a < kConventions; ++a)
-      for (std::size_t b = 0; b < kConventions; ++b) sum[a][b] += duels[a][b];
+  result.fits.resize(kConventions);
+  for (const PairResult& pair : per_pair)
+    for (std::size_t a = 0; a < kConventions; ++a) {
+      result.fits[a].met += pair.fits[a].met;
+      result.fits[a].on += pair.fits[a].on;
+      for (std::size_t b = 0; b < kConventions; ++b) sum[a][b] += pair.duels[a][b];
+    }
   result.pairs = pairs.size();
   for (const auto& row : sum) result.duels.emplace_back(row.begin(), row.end());
-  if (const auto better = betterThan(given, per_pair, sum)) {
+  if (const auto better = betterThan(given, per_pair, sum, result.fits, options.never)) {
     result.better = kPoseConventions[*better];
     result.duel = sum[given][*better];
+  } else {
+    result.doubtful = result.fits[given].met >= kFewestMet && result.fits[given].share() < kBadFit;
   }
   return result;
 }

@@ -2,130 +2,17 @@
 // The table of mistakes in docs/scans-and-poses.md: each row is tried with the real program.
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <fstream>
 #include <functional>
 #include <iterator>
-#include <random>
 #include <set>
 
-#include "apps/app_fixture.h"
-#include "gaussmap/core/scans.h"
-#include "gaussmap/io/pcd/pcd_writer.h"
+#include "apps/mistakes_fixture.h"
 
 namespace gaussmap::test {
 namespace {
 
 namespace fs = std::filesystem;
-
-using Words = std::vector<std::string>;
-
-/// Six scans in a room of 9 m x 6 m x 3 m with a cupboard, from a robot that drives a curve, and what people do to
-/// them.
-class MistakesTable : public AppTest {
- public:
-  using AppTest::own;
-  using AppTest::succeed;
-
-  /// Points on the walls, floor and ceiling of the room [m, map frame]; different points in each scan.
-  static std::vector<Vector<3>> room(unsigned scan) {
-    std::mt19937 random(scan + 11);
-    const auto uniform = [&](double low, double high) { return low + (high - low) * double(random()) / 4294967295.0; };
-    const Eigen::Vector3d low(-1, -2, -1), high(8, 4, 2);
-    std::vector<Vector<3>> points;
-    for (int i = 0; i < 3000; ++i) {
-      Vector<3> point(uniform(low.x(), high.x()), uniform(low.y(), high.y()), uniform(low.z(), high.z()));
-      const unsigned face = random() % 8;
-      if (face < 6)
-        point(int(face / 2)) = face % 2 == 0 ? low(int(face / 2)) : high(int(face / 2));
-      else
-        point =
-            face == 6 ? Vector<3>(5, uniform(2.5, 4), uniform(-1, 1)) : Vector<3>(uniform(5, 8), 2.5, uniform(-1, 1));
-      points.push_back(point);
-    }
-    return points;
-  }
-  static Pose poseOf(unsigned scan) {
-    const Eigen::AngleAxisd yaw(0.1 + 0.19 * scan, Eigen::Vector3d::UnitZ());
-    const Eigen::AngleAxisd pitch(0.04 * scan, Eigen::Vector3d::UnitY());
-    return {{0.4 + 0.7 * scan, 0.1 + 0.06 * scan * scan, 0.05 * scan}, Pose::Rotation(Eigen::Quaterniond(yaw * pitch))};
-  }
-  static std::vector<Vector<3>> seen(unsigned scan) {
-    std::vector<Vector<3>> points = room(scan);
-    for (Vector<3>& point : points) point = poseOf(scan).inverse() * Eigen::Vector3d(point);
-    return points;
-  }
-
-  /// Writes six scans with these names and poses in VIEWPOINT, and returns their folder.
-  std::string scans(
-      const std::function<Pose(unsigned)>& viewpoint = poseOf,
-      const std::function<std::string(unsigned)>& name = [](unsigned i) { return std::to_string(i); },
-      const std::function<std::vector<Vector<3>>(unsigned)>& points = seen) const {
-    fs::create_directories(own("scans"));
-    for (unsigned i = 0; i < 6; ++i)
-      writePcd(own("scans/" + name(i) + ".pcd"), points(i), PcdPrecision::Float, viewpoint(i));
-    return own("scans");
-  }
-  std::string timed() const {
-    return scans(poseOf, [](unsigned i) { return std::to_string(1700000000 + i) + ".5"; });
-  }
-  std::string inMapFrame() const { return scans(poseOf, number, room); }
-  /// Scans in the map frame without sensor positions. A sensor sees at most 3 m.
-  std::string withoutPositions() const {
-    return scans([](unsigned) { return Pose(); }, number,
-                 [](unsigned i) {
-                   std::vector<Vector<3>> points = room(i);
-                   const auto isFar = [i](const Vector<3>& point) {
-                     return (Eigen::Vector3d(point) - poseOf(i).translation).norm() > 3.0;
-                   };
-                   points.erase(std::remove_if(points.begin(), points.end(), isFar), points.end());
-                   return points;
-                 });
-  }
-
-  static std::string text(const Pose& pose) {
-    const Pose::Rotation& q = pose.rotation;
-    std::ostringstream line;
-    line.precision(12);
-    line << pose.translation.transpose() << ' ' << q.x() << ' ' << q.y() << ' ' << q.z() << ' ' << q.w();
-    return line.str();
-  }
-  std::string write(const std::string& name, const std::string& content) const {
-    std::ofstream(own(name), std::ios::binary) << content;
-    return own(name);
-  }
-  /// Writes a line per scan: `key`, and the pose.
-  std::string poses(
-      const std::function<std::string(unsigned)>& key, unsigned first = 0,
-      const std::function<std::string(unsigned)>& pose = [](unsigned i) { return text(poseOf(i)); }) const {
-    std::string lines;
-    for (unsigned i = first; i < 6; ++i) lines += key(i) + " " + pose(i) + "\n";
-    return write("poses.txt", lines);
-  }
-  static std::string number(unsigned i) { return std::to_string(i); }
-
-  Words build(const std::string& scans, const Words& more = {}) const {
-    Words words = {"pcd2map", scans, "-o", own("map.gmap"), "--budget", "1", "--force"};
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
-  }
-  Words withPoses(const std::string& scans, const std::string& poses) const { return build(scans, {"--poses", poses}); }
-  /// Builds a map of the room and returns its name.
-  std::string map(const std::string& name = "room.gmap") const {
-    if (!fs::exists(own("scans"))) scans();
-    succeed({"pcd2map", own("scans"), "-o", own(name), "--budget", "1"});
-    return own(name);
-  }
-  std::string cloud(const std::string& name, const std::vector<Vector<3>>& points, const Pose& viewpoint = {},
-                    PcdPrecision precision = PcdPrecision::Float) const {
-    writePcd(own(name), points, precision, viewpoint);
-    return own(name);
-  }
-  static std::vector<Vector<3>> moved(std::vector<Vector<3>> points, double scale, const Eigen::Vector3d& by) {
-    for (Vector<3>& point : points) point = scale * point + by;
-    return points;
-  }
-};
 
 /// A row of the table.
 struct Row {
@@ -146,7 +33,29 @@ const std::vector<Row>& rows() {
        [](const T& t) { return t.withPoses(t.timed(), t.poses([](unsigned i) { return T::number(i) + ".25"; })); }},
       {"the names of the scans have no times",
        [](const T& t) { return t.withPoses(t.scans(), t.poses([](unsigned i) { return T::number(i) + ".25"; }, 1)); }},
-      {"(no index 0)", [](const T& t) { return t.withPoses(t.scans(), t.poses(T::number, 1)); }},
+      {"dates in names are read as UTC",
+       [](const T& t) {
+         return t.withPoses(t.scans(T::poseOf, [](unsigned i) { return "20231115_00132" + std::to_string(i); }),
+                            t.poses([](unsigned i) { return std::to_string(1700000000 + i) + ".0"; }));
+       }},
+      {"have the same time, 1700000000.5 s",
+       [](const T& t) {
+         return t.withPoses(
+             t.scans(T::poseOf,
+                     [](unsigned i) { return (i < 3 ? "a_170000000" : "b_170000000") + T::number(i % 3) + ".5"; }),
+             t.poses([](unsigned i) { return std::to_string(1700000000 + i) + ".5"; }));
+       }},
+      {"have no number in common",
+       [](const T& t) {
+         return t.withPoses(t.scans(T::poseOf, [](unsigned i) { return std::string(1, char('a' + i)); }),
+                            t.poses([](unsigned) { return ""; }, 1, T::kitti));
+       }},
+      {"so they are sorted before they are matched by order",
+       [](const T& t) {
+         return t.withPoses(t.scans(), t.poses([](unsigned i) { return T::number(i % 4) + "." + T::number(i); }));
+       }},
+      {"(no index 0; the indices of the file start at 1)",
+       [](const T& t) { return t.withPoses(t.scans(), t.poses(T::number, 1)); }},
       {"its name is not in the file",
        [](const T& t) { return t.withPoses(t.scans(), t.poses([](unsigned i) { return T::number(i) + ".pcd"; }, 1)); }},
       {"5 poses for 6 scans",
@@ -159,6 +68,15 @@ const std::vector<Row>& rows() {
          return t.withPoses(t.scans(), t.poses(T::number, 0, [](unsigned i) {
            return i == 2 ? std::string("nan nan nan nan nan nan nan") : T::text(T::poseOf(i));
          }));
+       }},
+      {"outside the times of the poses",
+       [](const T& t) {
+         // Poses every 0.1 s until 0.3 s before the last scan, and scans every second.
+         std::string lines;
+         for (int k = 0; k <= 47; ++k)
+           lines += std::to_string(1700000000 + (k + 5) / 10) + "." + std::to_string((k + 5) % 10) + " " +
+                    T::text(T::poseOf(unsigned(k / 10))) + "\n";
+         return t.build(t.timed(), {"--poses", t.write("poses.txt", lines), "--no-pose-check"});
        }},
       {"have the same time but other poses",
        [](const T& t) {
@@ -193,6 +111,34 @@ const std::vector<Row>& rows() {
          return t.withPoses(t.scans(), t.poses([](unsigned) { return ""; }, 0,
                                                [](unsigned) { return std::string("1 0 0 4 0 2 0 5 0 0 1 6"); }));
        }},
+      {"is it written column by column?",
+       [](const T& t) {
+         return t.withPoses(t.scans(),
+                            t.poses([](unsigned) { return ""; }, 0,
+                                    [](unsigned) { return std::string("1 0 0 0 0 1 0 0 0 0 1 0 4 5 6 1"); }));
+       }},
+      {"4 numbers per line: no rotation",
+       [](const T& t) {
+         return t.withPoses(t.scans(), t.poses(T::number, 0, [](unsigned i) { return T::number(i) + " 2 0.5"; }));
+       }},
+      {"decimal comma: write 0.25, not 0,25",
+       [](const T& t) {
+         return t.withPoses(t.scans(),
+                            t.poses(T::number, 0, [](unsigned) { return std::string("0,25 1,5 2,5 0 0 0 1"); }));
+       }},
+      {"the file is UTF-16: save it as UTF-8",
+       [](const T& t) { return t.withPoses(t.scans(), t.write("poses.txt", std::string("\xFF\xFE") + "0")); }},
+      {"17 numbers: EuRoC?",
+       [](const T& t) {
+         return t.withPoses(t.scans(), t.poses(T::number, 0, [](unsigned) {
+           return std::string("1 2 3 1 0 0 0 9 9 9 0.1 0.1 0.1 0.2 0.2 0.2");
+         }));
+       }},
+      {"looks like images.txt of COLMAP",
+       [](const T& t) {
+         return t.withPoses(
+             t.scans(), t.poses(T::number, 0, [](unsigned i) { return "1 0 0 0 4 5 6 1 " + T::number(i) + ".png"; }));
+       }},
       {"the 3 x 3 part is a reflection",
        [](const T& t) {
          return t.withPoses(t.scans(), t.poses([](unsigned) { return ""; }, 0,
@@ -202,6 +148,22 @@ const std::vector<Row>& rows() {
       {"scans have no pose of their own (the identity)",
        [](const T& t) {
          return t.build(t.scans([](unsigned i) { return i < 3 ? Pose() : T::poseOf(i); }), {"--no-pose-check"});
+       }},
+      {"because they were written with too few digits",
+       [](const T& t) {
+         return t.withPoses(t.scans(), t.poses(T::number, 0, [](unsigned i) {
+           return "45512" + T::number(i) + " 5.40457e+06 310 0 0 0 1";
+         }));
+       }},
+      {"VIEWPOINT: the positions are rounded to steps of 10 m",
+       [](const T& t) {
+         fs::create_directories(t.own("scans"));
+         for (unsigned i = 0; i < 2; ++i)
+           t.write(
+               "scans/" + T::number(i) + ".pcd",
+               "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 1\nHEIGHT 1\nVIEWPOINT 45512" +
+                   T::number(i) + " 5.40457e+06 310 1 0 0 0\nPOINTS 1\nDATA ascii\n1 2 " + T::number(i) + "\n");
+         return t.build(t.own("scans"));
        }},
       {"Poses must be in metres",
        [](const T& t) {
@@ -213,15 +175,7 @@ const std::vector<Row>& rows() {
       {"are used as those of the sensor",
        [](const T& t) {
          t.write("calib.txt", "P0: 1 0 0 0 0 1 0 0 0 0 1 0\n");
-         return t.withPoses(t.scans(), t.poses([](unsigned) { return ""; }, 0,
-                                               [](unsigned i) {
-                                                 const Eigen::Matrix3d r = T::poseOf(i).rotation.toRotationMatrix();
-                                                 std::ostringstream line;
-                                                 line.precision(12);
-                                                 for (int row = 0; row < 3; ++row)
-                                                   line << r.row(row) << ' ' << T::poseOf(i).translation(row) << ' ';
-                                                 return line.str();
-                                               }));
+         return t.withPoses(t.scans(), t.poses([](unsigned) { return ""; }, 0, T::kitti));
        }},
       // What poses mean
       {"if the points are already in the map frame", [](const T& t) { return t.build(t.inMapFrame()); }},
@@ -254,6 +208,19 @@ const std::vector<Row>& rows() {
        [](const T& t) {
          return t.build(t.scans([](unsigned i) { return poseAs(PoseConvention::Camera, T::poseOf(i)); }));
        }},
+      {"The poses may be wrong, for example their times, units or sensor",
+       [](const T& t) {
+         return t.build(t.scans([](unsigned i) {
+           Pose pose = T::poseOf(i);
+           pose.rotation =
+               Pose::Rotation(pose.rotation * Eigen::AngleAxisd(1.05, Eigen::Vector3d(0.2, 0.1, 1).normalized()));
+           return pose;
+         }));
+       }},
+      {"fit each other only without the extrinsic",
+       [](const T& t) {
+         return t.build(t.scans(), {"--extrinsic", "0.3 0.1 0 0 0 0.5 0.8660254"});
+       }},
       // Sensors
       {"but their points show that the sensor moved",
        [](const T& t) { return Words{"clean", t.withoutPositions(), "--frame", "map", "-o", t.own("c")}; }},
@@ -279,7 +246,7 @@ const std::vector<Row>& rows() {
          for (int i = 0; i < 6000; ++i) fog.emplace_back(anywhere(-30, 30), anywhere(-30, 30), anywhere(-5, 20));
          return Words{"register", t.cloud("fog.pcd", fog, T::poseOf(2)), map};
        }},
-      {"no part of it lies on the map after the search",
+      {"no part of the scan lies on the map after the search",
        [](const T& t) {
          const std::string map = t.map();
          return Words{"register", t.own("scans/1.pcd"), map, "--guess", "500", "0", "0", "0", "0", "0", "1"};

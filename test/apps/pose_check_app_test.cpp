@@ -59,7 +59,7 @@ TEST_F(PoseCheckApp, AcceptsTheRightPoses) {
 TEST_F(PoseCheckApp, StopsForQuaternionsWithWFirst) {
   const std::string file =
       poses([](const std::vector<double>& p) { return std::vector<double>{p[0], p[1], p[2], p[6], p[3], p[4], p[5]}; });
-  expectDataError("use --pose-convention w-first, or --no-pose-check",
+  expectDataError("use --pose-convention w-first, or use --no-pose-check if the poses are right",
                   {"pcd2map", hall("scans"), "-o", own("a.gmap"), "--poses", file});
   expectDataError("use --pose-convention w-first", {"clean", hall("scans"), "-o", own("clean"), "--poses", file});
   const std::string built =
@@ -105,7 +105,10 @@ TEST_F(PoseCheckApp, StopsForAViewpointWithWLast) {
 }
 
 TEST_F(PoseCheckApp, StopsForAWrongFrame) {
-  expectDataError("without --frame map", {"pcd2map", hall("scans"), "-o", own("a.gmap"), "--frame", "map"});
+  expectDataError("run the command without --frame map, or use --no-pose-check",
+                  {"pcd2map", hall("scans"), "-o", own("a.gmap"), "--frame", "map"});
+  expectDataError("run the command without --frame map and --pose-convention, or use --no-pose-check",
+                  {"pcd2map", hall("scans"), "-o", own("a.gmap"), "--frame", "map", "--pose-convention", "inverse"});
   fs::create_directory(own("moved"));
   const FileScans scans = findScans({hall("scans")}).scans;
   for (const FileScan& file : scans.files()) {

@@ -6,6 +6,7 @@
 #include "apps/app_fixture.h"
 #include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
+#include "gaussmap/io/pcd/pcd_writer.h"
 #include "gaussmap/io/scans/file_scans.h"
 #include "io/gmap/map_equality.h"
 
@@ -105,7 +106,17 @@ TEST_F(PosesApp, NameTheScanThatHasNoPoseInTime) {
 TEST_F(PosesApp, SayThatClocksDiffer) {
   const std::string poses = file({"0.5", "1.5", "2.5", "3.5", "4.5"});
   expectDataError("5 of 5 scans have no pose", build(timed(), {"--poses", poses}));
-  expectDataError("the poses from 0.5 s to 4.5 s", build(timed(), {"--poses", poses, "--skip-without-pose"}));
+  const Outcome outcome = runApp(build(timed(), {"--poses", poses, "--skip-without-pose"}));
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.err.find("the times of the scans are from 1700000010.25 s to 1700000014.25 s, those of the poses "
+                             "from 0.5 s to 4.5 s; check that both use the same clock, or use --match-poses order"),
+            std::string::npos)
+      << outcome.err;
+  EXPECT_EQ(outcome.err.find("--max-time-gap"), std::string::npos) << outcome.err;
+  // The same clock, but no pose is near enough.
+  const std::string off = file({"1700000010.5", "1700000011.5", "1700000012.5", "1700000013.5", "1700000014.5"});
+  expectDataError("; give the pose of each scan, or use --max-time-gap if the nearest poses are right\n",
+                  build(timed(), {"--poses", off, "--max-time-gap", "0.1"}));
 }
 
 TEST_F(PosesApp, AreMatchedByTheNumberOfTheScan) {
@@ -114,7 +125,7 @@ TEST_F(PosesApp, AreMatchedByTheNumberOfTheScan) {
   kitti += "1 0 0 9 0 1 0 9 0 0 1 9\n";  // more lines than scans
   const std::string path = directory_.write("kitti.txt", kitti);
   const Json said = Json::parse(succeed({"scans", numbered(), "--poses", path, "--json"}));
-  EXPECT_NE(said["poses"].get<std::string>().find("counted from the first pose = 0"), std::string::npos) << said;
+  EXPECT_NE(said["poses"].get<std::string>().find("number 0 is the first pose"), std::string::npos) << said;
   for (std::size_t i = 0; i < poses_.size(); ++i)
     EXPECT_NEAR(said["scans"][i]["translation"][0].get<double>(), poses_[i].translation.x(), 1e-12);
   expectRight("matched by index", numbered(), {"--poses", file({"0", "1", "2", "3", "4"})});
@@ -192,6 +203,19 @@ TEST_F(PosesApp, ReadTheCalibrationBesideKittiPoses) {
             std::string::npos);
 }
 
+TEST_F(PosesApp, MayBeTheSameForASensorThatStandsStill) {
+  // Three scans of one wall from one place, with different noise.
+  std::vector<std::string> words = {"pcd2map", "-o", own("map.gmap")};
+  for (int scan = 0; scan < 3; ++scan) {
+    std::vector<Vector<3>> points;
+    for (int i = 0; i < 2000; ++i)
+      points.emplace_back(5.0 + 0.004 * ((i * 7 + scan * 3) % 5), 0.1 * (i % 50) - 2.5, 0.1 * (i / 50) - 2.0);
+    writePcd(own("still" + std::to_string(scan) + ".pcd"), points);
+    words.push_back(own("still" + std::to_string(scan) + ".pcd"));
+  }
+  succeed(words);
+}
+
 TEST_F(PosesApp, ScansShowsOneTable) {
   const std::string table = succeed({"scans", scene("scans"), "--each"});
   for (const char* const row :
@@ -215,9 +239,11 @@ TEST_F(PosesApp, ScansFailsAsBuildingWould) {
   const Outcome outcome = runApp({"scans", numbered(), "--poses", file({"0", "1", "2", "3"})});
   EXPECT_EQ(outcome.code, 1);
   EXPECT_NE(outcome.out.find("no pose    " + own("numbered/4.pcd") + ": no index 4"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("4.pcd (no index 4)\n"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.err.find("--skip-without-pose"), std::string::npos) << outcome.err;
   EXPECT_EQ(runApp({"scans", numbered(), "--poses", file({"0", "1", "2", "3"}), "--skip-without-pose"}).code, 0);
   expectDataError("does not exist", {"scans", own("none")});
+  expectDataError("; give the pose of each scan\n", {"scans", numbered(), "--poses", file({"7.pcd", "8.pcd"}, 3)});
 }
 
 TEST_F(PosesApp, OptionsOfPosesNeedPoses) {

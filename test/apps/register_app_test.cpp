@@ -165,13 +165,36 @@ TEST_F(RegisterApp, GoesOnAfterAScanWithoutPoints) {
   EXPECT_EQ(outcome.code, 1);
   EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 2) << outcome.out;
   EXPECT_NE(outcome.err.find("s2.pcd: no usable point\n"), std::string::npos) << outcome.err;
-  EXPECT_NE(outcome.err.find("1 of 3 scans were not registered"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("1 of 3 scans was not registered"), std::string::npos) << outcome.err;
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 2) << outcome.err;
   const PoseFile found = readPoseFile(own("t.tum"));
   ASSERT_EQ(found.entries.size(), 2u);
   EXPECT_EQ(found.entries[1].name, "3");
   EXPECT_LT((found.entries[1].pose->translation - truth(2).translation).norm(), 0.02);
   expectDataError("s2.pcd: no usable point", {"register", own("s2.pcd"), world("map.gmap")});
+}
+
+TEST_F(RegisterApp, GoesOnAfterADamagedFile) {
+  const std::string whole = withViewpoint(scan(1), viewpointOf(truth(1)));
+  directory_.write("d1.pcd", withViewpoint(scan(0), viewpointOf(truth(0))));
+  directory_.write("d2.pcd", whole.substr(0, whole.size() / 2));
+  directory_.write("d3.pcd", withViewpoint(scan(2), viewpointOf(truth(2))));
+  for (const std::vector<std::string>& order :
+       {std::vector<std::string>{"d1.pcd", "d2.pcd", "d3.pcd"}, {"d2.pcd", "d1.pcd", "d3.pcd"}}) {
+    std::vector<std::string> words = {"register"};
+    for (const std::string& name : order) words.push_back(own(name));
+    words.insert(words.end(), {world("map.gmap"), "--tum", own("t.tum"), "--force"});
+    const Outcome outcome = runApp(words);
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 2) << outcome.out;
+    EXPECT_NE(outcome.err.find("gaussmap: " + own("d2.pcd") + ": "), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("1 of 3 scans was not registered"), std::string::npos) << outcome.err;
+    const PoseFile found = readPoseFile(own("t.tum"));
+    ASSERT_EQ(found.entries.size(), 2u);
+    EXPECT_LT((found.entries[0].pose->translation - truth(0).translation).norm(), 0.02);
+    EXPECT_LT((found.entries[1].pose->translation - truth(2).translation).norm(), 0.02);
+  }
+  expectDataError("d2.pcd: ", {"register", own("d2.pcd"), world("map.gmap")});
 }
 
 TEST_F(RegisterApp, SaysThatAPoseMayBeWrongWhenLittleOfTheScanLiesOnTheMap) {
@@ -192,9 +215,11 @@ TEST_F(RegisterApp, SaysWhatIsWrong) {
   expectUsageError("guess", {"register", scan(0), world("map.gmap"), "--guess", "1", "2"});
   expectUsageError("quaternion",
                    {"register", scan(0), world("map.gmap"), "--guess", "0", "0", "0", "0", "0", "0", "0"});
+  expectUsageError("check the order of its numbers, or give more digits",
+                   {"register", scan(0), world("map.gmap"), "--guess", "9", "-9", "2", "0", "0", "0.19", "0.98"});
   expectDataError("none.gmap", {"register", scan(0), own("none.gmap")});
   expectDataError("none.pcd", {"register", own("none.pcd"), world("map.gmap")});
-  expectDataError("no part of it lies on the map",
+  expectDataError("no part of the scan lies on the map after the search",
                   {"register", scan(0), world("map.gmap"), "--guess", "9000", "0", "0", "0", "0", "0", "1"});
   directory_.write("there.tum", "mine");
   expectUsageError("there.tum", {"register", scan(0), world("map.gmap"), "--tum", own("there.tum")});

@@ -53,8 +53,11 @@ class SensorPositions : public AppTest {
 TEST_F(SensorPositions, AreAskedForWhenCloudsInTheMapFrameHaveNone) {
   expectDataError("all scans have the sensor position (0 0 0), but their points show that the sensor moved",
                   {"clean", world("moved"), "--frame", "map", "-o", own("c")});
-  expectDataError("--poses FILE", {"clean", world("moved"), "--frame", "map", "-o", own("c")});
-  expectDataError("--online follows the rays",
+  expectDataError(
+      ". The command clean follows the rays from the sensor to the points: give the poses of the sensor "
+      "with --poses FILE\n",
+      {"clean", world("moved"), "--frame", "map", "-o", own("c")});
+  expectDataError(". The option --online follows the rays",
                   {"pcd2map", world("moved"), "--frame", "map", "--online", "-o", own("m.gmap")});
 }
 

@@ -179,7 +179,8 @@ const char* nameOf(PoseConvention convention) {
 }
 
 struct Counts {
-  int runs = 0, invisible = 0, found = 0, named = 0;
+  int runs = 0, invisible = 0, found = 0, named = 0, doubtful = 0;
+  double least_fit = 1.0;  // share of pieces on surfaces: with the right poses, or with the named convention
 };
 
 struct Options {
@@ -213,6 +214,7 @@ void run(const Options& options) {
       const double start = wallSeconds();
       const PoseCheck result = checkPoses(Run(sequence, first, count, mistake), check);
       seconds += wallSeconds() - start;
+      one.doubtful = result.doubtful && !one.invisible;
       one.found = result.better.has_value() && !one.invisible;
       one.named = one.found && mistake != nullptr && *result.better == mistake->convention;
       if (options.verbose && (mistake == nullptr || (!one.invisible && !one.named))) {
@@ -227,11 +229,15 @@ void run(const Options& options) {
           }
         std::printf("\n");
       }
+      if (mistake == nullptr && !result.fits.empty()) one.least_fit = result.fits[std::size_t(result.given)].share();
+      if (one.named) one.least_fit = result.fits[std::size_t(*result.better)].share();
       for (Counts* const counts : {&table[sequence.name][m], &all[m]}) {
         counts->runs += one.runs;
         counts->invisible += one.invisible;
         counts->found += one.found;
         counts->named += one.named;
+        counts->doubtful += one.doubtful;
+        counts->least_fit = std::min(counts->least_fit, one.least_fit);
       }
     }
   }
@@ -253,6 +259,14 @@ void run(const Options& options) {
   };
   for (const auto& [name, row] : table) print(name, row);
   print("all", all);
+  std::printf("warnings that the scans do not fit: %d with the right poses; with mistakes that were not named:",
+              all[0].doubtful);
+  for (std::size_t m = 1; m < all.size(); ++m) std::printf(" %d", all[m].doubtful);
+  std::printf("\n");
+  std::printf("least share of pieces on surfaces: %.3f with the right poses; with the named meaning:",
+              all[0].least_fit);
+  for (std::size_t m = 1; m < all.size(); ++m) std::printf(" %.3f", all[m].least_fit);
+  std::printf("\n");
   std::printf("%.1f ms per check\n", 1e3 * seconds / options.runs / double(kMistakes.size() + 1));
 }
 

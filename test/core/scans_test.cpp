@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <limits>
 
 #include "gaussmap/core/error.h"
@@ -13,6 +14,7 @@
 #include "gaussmap/mapping/online/online_mapper.h"
 #include "gaussmap/sensor/projection.h"
 #include "io/files/temporary_directory.h"
+#include "io/pcd/pcd_bytes.h"
 #include "map/random_clouds.h"
 
 namespace gaussmap {
@@ -118,6 +120,35 @@ TEST(FileScansTest, OpenEachFileOnce) {
   std::filesystem::remove(path);  // what is open stays readable
   EXPECT_EQ(scans.read(0).points, before.points);
   EXPECT_THROW(scans.open(1), std::out_of_range);
+}
+
+TEST(FileScansTest, KeepPointsForTheNextOpenOnlyIfAllowed) {
+  // The program overwrites the file. A reader that kept its points does not see that.
+  const test::TemporaryDirectory directory;
+  const std::string text = test::xyzHeader(1, "ascii");
+  const std::filesystem::path path = directory.write("scan.pcd", text + "1 2 3\n");
+  const auto overwrite = [&](const std::string& point) {
+    std::fstream(path, std::ios::in | std::ios::out | std::ios::binary).seekp(std::streamoff(text.size())) << point;
+  };
+  const auto xOf = [](const ScanReader& reader) {
+    PointBlock<3> block;
+    reader.read(0, block);
+    return block.coordinate[0][0];
+  };
+  FileScans scans({{path, {}}});
+  EXPECT_EQ(xOf(*scans.open(0)), 1.0);
+  overwrite("4");
+  EXPECT_EQ(xOf(*scans.open(0)), 4.0);  // nothing is kept
+  scans.keepForNextOpen(1);
+  EXPECT_EQ(xOf(*scans.open(0)), 4.0);
+  overwrite("5");
+  EXPECT_EQ(xOf(*scans.open(0)), 5.0);  // the points take more than one byte
+  scans.keepForNextOpen(1000);
+  EXPECT_EQ(xOf(*scans.open(0)), 5.0);
+  scans.keepForNextOpen(0);
+  overwrite("6");
+  EXPECT_EQ(xOf(*scans.open(0)), 5.0);  // kept
+  EXPECT_EQ(xOf(*scans.open(0)), 6.0);  // only once
 }
 
 TEST(FileScansTest, CarryTheValuesOfTheirPoints) {

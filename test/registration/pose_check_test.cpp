@@ -99,6 +99,31 @@ TEST(PoseCheck, AcceptsTheConventionThatTheProgramWasTold) {
   EXPECT_EQ(checkPoses(scans, options).better, PoseConvention::Inverse);
 }
 
+TEST(PoseCheck, SaysThatScansDoNotFitIfNoConventionExplainsIt) {
+  const std::vector<Pose> truth = curve(6);
+  std::vector<Pose> turned = truth, in_millimetres = truth;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    // A sensor that is turned by 60 degrees on its carrier, whose poses the file holds.
+    turned[i].rotation =
+        Pose::Rotation(truth[i].rotation * Eigen::AngleAxisd(1.05, Eigen::Vector3d(0.2, 0.1, 1).normalized()));
+    in_millimetres[i].translation *= 1000.0;
+  }
+  for (const std::vector<Pose>& wrong : {turned, in_millimetres}) {
+    const PoseCheck check = checkPoses(scansOf(truth, wrong));
+    EXPECT_FALSE(check.better) << int(check.better.value_or(PoseConvention::SensorToMap));
+  }
+  EXPECT_TRUE(checkPoses(scansOf(truth, turned)).doubtful);
+  EXPECT_FALSE(checkPoses(scansOf(truth, truth)).doubtful);
+}
+
+TEST(PoseCheck, NamesNoConventionThatIsImpossible) {
+  const std::vector<Pose> poses = curve(6);
+  const MemoryScans scans = scansOf(poses, changed(poses, PoseConvention::WLast));
+  PoseCheckOptions options;
+  options.never = PoseConvention::WFirst;
+  EXPECT_NE(checkPoses(scans, options).better, PoseConvention::WFirst);
+}
+
 TEST(PoseCheck, HasNothingToCompareWithoutMotion) {
   const std::vector<Pose> standing(5, curve(3).back());
   EXPECT_EQ(checkPoses(scansOf(standing, standing)).pairs, 0u);

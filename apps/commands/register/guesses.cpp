@@ -2,19 +2,28 @@
 #include "commands/register/guesses.h"
 
 #include <algorithm>
-#include <cctype>
+#include <cstdint>
 #include <set>
 
 #include "common/command.h"
+#include "core/same_pose.h"
 #include "gaussmap/io/pcd/map_pcd.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
-#include "io/files/text.h"
+#include "io/scans/name_numbers.h"
+#include "io/scans/scan_names.h"
 
 namespace gaussmap::app {
 namespace {
 
-bool samePlace(const Pose& a, const Pose& b) {
-  return a.translation == b.translation && a.rotation.coeffs() == b.rotation.coeffs();
+/// Returns the VIEWPOINT of a scan. If there are `several` scans, returns nullopt for a file that cannot be opened: the
+/// command reports it when it reads its points, and registers the others.
+std::optional<Pose> viewpointOf(const std::filesystem::path& scan, bool several) {
+  try {
+    return PcdReader(scan).header().viewpoint;
+  } catch (const FileError&) {
+    if (!several) throw;
+    return std::nullopt;
+  }
 }
 
 /// Returns the usable VIEWPOINTs. A map in place of a scan has none: it starts at its present place.
@@ -25,50 +34,32 @@ std::vector<std::optional<Pose>> viewpointsOf(const std::vector<std::filesystem:
       poses[i] = Pose();
       continue;
     }
-    const Pose viewpoint = PcdReader(scans[i]).header().viewpoint;
-    const std::string fault = poseFault(viewpoint);
-    if (fault.empty()) poses[i] = normalised(viewpoint);
+    const std::optional<Pose> viewpoint = viewpointOf(scans[i], scans.size() > 1);
+    if (!viewpoint) continue;
+    const std::string fault = poseFault(*viewpoint);
+    if (fault.empty()) poses[i] = normalised(*viewpoint);
     if (i == 0 && !guessed && !fault.empty())
       throw FileError(scans[i], "its VIEWPOINT cannot be the first guess: " + fault + "; use --guess");
   }
   return poses;
 }
 
-/// Forgets poses that nobody set: the identity of several scans, or one pose of all scans. The first scan keeps the
-/// latter, because the search has to start somewhere.
+/// Forgets poses that nobody set: the identity of several scans, or one pose of all scans that have a pose. The first
+/// of them keeps the latter, because the search has to start somewhere.
 void dropUnset(std::vector<std::optional<Pose>>& poses, const std::vector<std::filesystem::path>& scans) {
   if (poses.size() < 2) return;
-  std::size_t at_identity = 0;
+  std::size_t at_identity = 0, first = poses.size();
   bool all_same = true;
-  for (const std::optional<Pose>& pose : poses) {
-    at_identity += pose && samePlace(*pose, Pose());
-    all_same = all_same && pose && poses[0] && samePlace(*pose, *poses[0]);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (!poses[i]) continue;
+    first = std::min(first, i);
+    at_identity += detail::samePose(*poses[i], Pose());
+    all_same = all_same && detail::samePose(*poses[i], *poses[first]);
   }
   for (std::size_t i = 0; i < poses.size(); ++i)
     if (!isMap(scans[i]) && poses[i] &&
-        ((all_same && i > 0) || (!all_same && at_identity > 1 && samePlace(*poses[i], Pose()))))
+        ((all_same && i > first) || (!all_same && at_identity > 1 && detail::samePose(*poses[i], Pose()))))
       poses[i].reset();
-}
-
-/// Returns the last number in a name: 1689000000.5 in "1689000000.500", 7 in "scan07".
-std::optional<double> lastNumber(const std::string& name) {
-  const auto isDigit = [&](std::size_t i) { return std::isdigit(static_cast<unsigned char>(name[i])) != 0; };
-  std::size_t last = name.size();
-  while (last > 0 && !isDigit(last - 1)) --last;
-  std::size_t first = last;
-  bool has_point = false;
-  while (first > 0) {
-    if (!isDigit(first - 1)) {
-      const bool is_point = name[first - 1] == '.' && !has_point && first > 1 && isDigit(first - 2);
-      if (!is_point) break;
-      has_point = true;
-    }
-    --first;
-  }
-  double number = 0.0;
-  if (first == last || !detail::parseNumber(std::string_view(name).substr(first, last - first), number))
-    return std::nullopt;
-  return number;
 }
 
 }  // namespace
@@ -96,12 +87,12 @@ RegisterGuesses::RegisterGuesses(const std::vector<std::filesystem::path>& scans
 
 std::vector<double> RegisterGuesses::times() const {
   std::vector<double> times;
-  for (std::size_t i = 0; i < scans_.size(); ++i)
-    if (const auto time = assigned_.times[i] ? assigned_.times[i] : lastNumber(scans_[i].stem().string()))
-      times.push_back(*time);
+  for (const std::optional<double>& time : assigned_.times)
+    if (time) times.push_back(*time);
   if (std::set<double>(times.begin(), times.end()).size() == scans_.size()) return times;
+  const std::vector<std::uint64_t> indices = detail::numbersIn(detail::scanNames(scans_)).indices;
   times.clear();
-  for (std::size_t i = 0; i < scans_.size(); ++i) times.push_back(double(i));
+  for (std::size_t i = 0; i < scans_.size(); ++i) times.push_back(indices.empty() ? double(i) : double(indices[i]));
   return times;
 }
 

@@ -15,12 +15,12 @@ namespace gaussmap::app {
 /// The poses at which the search for each scan starts.
 ///
 /// Each scan has an own pose, from a pose file or its VIEWPOINT. VIEWPOINTs that have a fault, or that several scans
-/// share, are not poses of the scans.
+/// share, are not poses of the scans. If there are several scans, a file that cannot be opened has no own pose.
 class RegisterGuesses {
  public:
   /// `options`: how own poses are found. `guess`: x y z qx qy qz qw of the first scan, or empty. Throws UsageError if
-  /// `guess` has a fault; FileError if the pose file does not fit the scans, or if the VIEWPOINT of the first scan has
-  /// a fault and there is no other guess.
+  /// `guess` has a fault; FileError if the pose file does not fit the scans, if the VIEWPOINT of the first scan has a
+  /// fault and there is no other guess, or if the only scan cannot be opened.
   RegisterGuesses(const std::vector<std::filesystem::path>& scans, const FindScansOptions& options,
                   const std::vector<double>& guess);
 
@@ -34,7 +34,7 @@ class RegisterGuesses {
   /// Where the poses come from, one sentence.
   const std::string& description() const { return assigned_.description; }
   const std::vector<std::string>& warnings() const { return assigned_.warnings; }
-  /// Returns the time of each scan for a TUM file: the time in its name [s], or else the last number in its name. If a
+  /// Returns the time of each scan for a TUM file: the time in its name [s], or else the number in its name. If a
   /// name has no number, or two scans have the same one, returns 0, 1, 2 and so on.
   std::vector<double> times() const;
 

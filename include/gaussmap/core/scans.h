@@ -45,7 +45,7 @@ enum class ScanFrame {
 /// What a pose that was read from a file means.
 enum class PoseConvention {
   SensorToMap,  ///< usual: the pose moves points from the sensor frame into the map frame
-  NoMotion,     ///< nothing: the points are in the map frame. ScanFrame::Map also keeps the positions of the sensors
+  NoMotion,     ///< the pose is ignored: the points are in the map frame. Unlike ScanFrame::Map, no sensor positions
   Inverse,      ///< the pose moves points from the map frame into the sensor frame
   WFirst,       ///< the quaternion was read as x y z w, but is written as w x y z
   WLast,        ///< the quaternion was read as w x y z, but is written as x y z w
@@ -53,7 +53,7 @@ enum class PoseConvention {
   Optical       ///< the pose is that of a body (x forward, y left, z up), but the points have the axes of a camera
 };
 
-/// Returns the pose, from the sensor frame to the map frame, of a scan whose pose was read as `read`.
+/// Converts a pose `read` from a file into a pose from the sensor frame to the map frame.
 ///
 /// Camera and Optical change the axes on both sides, as for the poses of KITTI odometry: the map has the axes of the
 /// points. The distance between camera and lidar is unknown and counts as zero.

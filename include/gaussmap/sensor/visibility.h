@@ -32,8 +32,8 @@ struct GAUSSMAP_API DepthNoise {
     const double beyond = std::max(0.0, depth - start);
     return constant + growth * beyond * beyond;
   }
-  /// Returns the noise of a structured-light camera of the kind of the Kinect: 0.0012 + 0.0019 (z - 0.4)^2, Nguyen,
-  /// Izadi and Lovell 2012, eq. (3).
+  /// Returns the noise of a structured-light camera such as the Kinect: 0.0012 + 0.0019 (z - 0.4)^2, Nguyen, Izadi and
+  /// Lovell 2012, eq. (3).
   static DepthNoise camera() { return {0.0012, 0.0019, 0.4}; }
 };
 
@@ -44,9 +44,9 @@ struct VisibilityOptions {
   /// The point must be at least this far from the surface on which the beams end [m], >= 0. This is needed at grazing
   /// angles: a beam can end metres behind a point, although both lie on the same road.
   double clearance = 0.35;
-  /// Noise of the sensor, which widens both limits: by three standard deviations of the depth at the point and three at
-  /// the end of the beam. They are added, because the errors of calibration and pose are systematic. std::nullopt: none
-  /// for a SphericalProjection, because both limits include the noise of a lidar; DepthNoise::camera() for a
+  /// Noise of the sensor, which widens both limits: by three standard deviations of the depth at the point, plus three
+  /// at the end of the beam. The two are added, because errors of calibration and pose are systematic. std::nullopt:
+  /// none for a SphericalProjection, because both limits include the noise of a lidar; DepthNoise::camera() for a
   /// PlanarProjection.
   std::optional<DepthNoise> noise = std::nullopt;
 };

@@ -20,6 +20,7 @@ struct FileScanInfo {
   std::size_t points = 0;                                       ///< including points without a return
   std::optional<Pose> pose = std::nullopt;                      ///< sensor frame to map frame; std::nullopt: unknown
   std::optional<std::chrono::nanoseconds> time = std::nullopt;  ///< exact, since the zero of the file's clock
+  double position_step = 0.0;  ///< step in which the position of the pose is written as text [m]; 0: unknown
 };
 
 /// An open file with one or more scans. The implementations read one kind of file each. All functions are thread-safe.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "io/files/text.h"
+#include "io/files/written_position.h"
 
 namespace gaussmap::detail {
 namespace {
@@ -253,6 +254,7 @@ class HeaderParser {
     header_.viewpoint.translation = {v[0], v[1], v[2]};
     header_.viewpoint.rotation = {v[3], v[4], v[5], v[6]};
     header_.has_viewpoint = true;
+    header_.viewpoint_step = stepOfRoundedPosition({line.words[0], line.words[1], line.words[2]});
   }
 
   void readEncoding() {

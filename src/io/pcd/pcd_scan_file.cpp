@@ -61,7 +61,10 @@ class PcdScanFile : public ScanFile {
     return std::string("PCD ") + encoding + (header.height > 1 ? ", organised" : "");
   }
   std::size_t size() const override { return 1; }
-  FileScanInfo info(std::size_t) const override { return {"", reader_.size(), reader_.header().viewpoint}; }
+  FileScanInfo info(std::size_t) const override {
+    const PcdHeader& header = reader_.header();
+    return {"", reader_.size(), header.viewpoint, std::nullopt, header.viewpoint_step};
+  }
   std::unique_ptr<ScanReader> open(std::size_t) const override {
     return std::make_unique<PcdScanReader>(reader_.sameFile());
   }

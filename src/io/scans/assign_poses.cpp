@@ -2,8 +2,10 @@
 #include "io/scans/assign_poses.h"
 
 #include <algorithm>
+#include <limits>
 #include <system_error>
 
+#include "core/same_pose.h"
 #include "io/scans/name_numbers.h"
 #include "io/scans/pose_times.h"
 #include "io/scans/scan_names.h"
@@ -32,12 +34,33 @@ std::string countText(std::size_t count, const std::string& what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
-/// What to do about scans without a pose.
-std::string wayOut(PoseMatch match) {
-  std::string skip = "use --skip-without-pose to leave such scans out";
-  if (match == PoseMatch::Time) return skip + ", or --max-time-gap if the nearest poses are right";
-  if (match == PoseMatch::Index) return skip + ", or --match-poses order if the lines are in the order of the scans";
-  return skip;
+using ScanTimes = std::vector<std::optional<double>>;  // per scan [s]
+
+/// Returns true if no scan has a time near those of the poses, so the times are from different clocks.
+bool clocksDiffer(const PoseFile& file, const ScanTimes& times) {
+  constexpr double kNear = 10.0;  // [s]
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const PoseFile::Entry& entry : file.entries) {
+    if (!entry.time) continue;
+    low = std::min(low, secondsOf(*entry.time));
+    high = std::max(high, secondsOf(*entry.time));
+  }
+  return std::none_of(times.begin(), times.end(), [&](const std::optional<double>& time) {
+    return time && *time >= low - kNear && *time <= high + kNear;
+  });
+}
+
+/// Returns what to do about scans without a pose.
+std::string wayOut(const PoseFile& file, const MatchedPoses& matched, const ScanTimes& times) {
+  const bool none = matched.missing.size() == times.size();
+  const std::string order = file.entries.size() == times.size()
+                                ? ", or use --match-poses order if the lines are in the order of the scans"
+                                : "";
+  if (none && matched.match == PoseMatch::Time && clocksDiffer(file, times))
+    return "check that both use the same clock" + order;
+  const std::string start = none ? "give the pose of each scan" : "use --skip-without-pose to leave such scans out";
+  if (matched.match == PoseMatch::Time) return start + ", or use --max-time-gap if the nearest poses are right";
+  return matched.match == PoseMatch::Index ? start + order : start;
 }
 
 /// "2 of 6 scans have no pose: a.pcd (no index 3), b.pcd (no index 4)"
@@ -48,10 +71,6 @@ std::string missingText(const MatchedPoses& matched, const std::vector<ScanKey>&
   for (std::size_t i = 0; i < std::min(count, kNamed); ++i)
     text += (i > 0 ? ", " : "") + scans[matched.missing[i].scan].name + " (" + matched.missing[i].reason + ")";
   return text + (count > kNamed ? " ..." : "");
-}
-
-bool isIdentity(const Pose& pose) {
-  return pose.translation.isZero(0.0) && pose.rotation.coeffs() == Pose::Rotation::Identity().coeffs();
 }
 
 bool isPlainKitti(const PoseFile& file) {
@@ -87,15 +106,16 @@ void readPoses(std::vector<ScanPose>& scans, const std::vector<ScanKey>& keys, c
     const std::string what = missingText(matched, keys);
     const bool none = matched.missing.size() == scans.size();
     if (none || !options.skip_without_pose)
-      throw FileError(file.path, what + (none ? "; " + matched.how : "") + "; " + wayOut(matched.match));
-    assigned.warnings.push_back(file.path.string() + ": " + what + "; left out");
+      throw FileError(file.path,
+                      what + (none ? "; " + matched.how : "") + "; " + wayOut(file, matched, assigned.times));
+    assigned.warnings.push_back(file.path.string() + ": " + what);
   }
   for (const MatchedPoses::Missing& missing : matched.missing) {
     assigned.left_out[missing.scan] = true;
     assigned.without_pose.push_back(scans[missing.scan].label() + ": " + missing.reason);
   }
   for (std::size_t i = 0; i < scans.size(); ++i)
-    if (matched.poses[i]) scans[i].pose = *matched.poses[i];
+    if (matched.poses[i]) scans[i].pose = *matched.poses[i], scans[i].position_step = 0.0;
   if (!extrinsic) extrinsic = calibrationBeside(file, assigned.warnings);
 }
 
@@ -159,7 +179,7 @@ AssignedPoses assignPoses(std::vector<ScanPose>& scans, const FindScansOptions& 
   else
     readPoses(scans, keys, options, assigned, extrinsic);
   for (const ScanPose& scan : scans) assigned.as_read.push_back(scan.pose);
-  const bool moves = extrinsic && !isIdentity(extrinsic->pose);
+  const bool moves = extrinsic && !samePose(extrinsic->pose, Pose());
   if (!moves && options.convention == PoseConvention::SensorToMap) return assigned;
   if (moves) assigned.extrinsic = extrinsic->pose;
   const Pose& sensor = assigned.extrinsic;

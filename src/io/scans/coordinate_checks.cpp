@@ -102,7 +102,7 @@ std::vector<std::string> warningsOf(const std::vector<SampledScan>& scans, doubl
   std::ostringstream text;
   if (first_rounded != nullptr) {
     text << first_rounded->path.string() << andMore(rounded) << ": the coordinates are rounded to steps of " << step
-         << " m, because they are 32-bit floats far from the origin; the cells have " << resolution << " m. "
+         << " m, because they are 32-bit floats far from the origin; the side of a cell is " << resolution << " m. "
          << (first_rounded->is_ascii
                  ? "Change SIZE of x y z to 8 in the header if the text has more digits"
                  : "Write the points again from their source, as doubles (F 8) or relative to a VIEWPOINT near them");

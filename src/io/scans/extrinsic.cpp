@@ -22,8 +22,8 @@ std::string numbersOnly(std::string_view text) {
 
 std::optional<Pose> poseOfNumbers(const PoseText& text, std::size_t line, const std::vector<double>& numbers) {
   if (numbers.size() == 12 || numbers.size() == 16) {
-    if (numbers.size() == 16 && !(numbers[12] == 0.0 && numbers[13] == 0.0 && numbers[14] == 0.0 && numbers[15] == 1.0))
-      text.fail(line, "expected 0 0 0 1 as the last row of a 4 x 4 matrix");
+    if (numbers.size() == 16)
+      if (const std::string fault = lastRowFault(numbers.data()); !fault.empty()) text.fail(line, fault);
     return poseOfMatrix(text, line, numbers.data());
   }
   if (numbers.size() != 7) return std::nullopt;
@@ -32,18 +32,44 @@ std::optional<Pose> poseOfNumbers(const PoseText& text, std::size_t line, const 
   return normalised(pose);
 }
 
-/// Returns the text behind a key such as "Tr:"; nullopt if the line has another one.
+/// Returns the text behind a key such as "Tr:" or "Tr"; nullopt if the line has another one.
 std::optional<std::string_view> valueOf(std::string_view line, std::string_view key) {
   if (line.substr(0, key.size()) != key) return std::nullopt;
   line.remove_prefix(key.size());
+  const bool has_blank = !line.empty() && isBlank(line.front());
   while (!line.empty() && isBlank(line.front())) line.remove_prefix(1);
-  if (line.empty() || line.front() != ':') return std::nullopt;
-  return line.substr(1);
+  if (!line.empty() && line.front() == ':') return line.substr(1);
+  if (!has_blank || line.empty()) return std::nullopt;
+  return line;
 }
 
 std::vector<double> numbersInText(std::string_view text) {
   const std::string plain = numbersOnly(text);
   return numbersOf(splitWords(plain), 0);
+}
+
+/// Reads the lines "R:" and "T:" of the raw data of KITTI. The name of the file says what they mean.
+std::optional<Extrinsic> readRotationAndTranslation(const PoseText& text) {
+  std::vector<double> rotation, translation;
+  std::size_t number = 0;
+  for (const TextLine& line : text.lines) {
+    if (const auto value = valueOf(line.text, "R")) rotation = numbersInText(*value), number = line.number;
+    if (const auto value = valueOf(line.text, "T")) translation = numbersInText(*value);
+  }
+  if (rotation.size() != 9 || translation.size() != 3) return std::nullopt;
+  std::vector<double> matrix;
+  for (std::size_t row = 0; row < 3; ++row) {
+    matrix.insert(matrix.end(), rotation.begin() + static_cast<std::ptrdiff_t>(3 * row),
+                  rotation.begin() + static_cast<std::ptrdiff_t>(3 * row + 3));
+    matrix.push_back(translation[row]);
+  }
+  Extrinsic extrinsic;
+  extrinsic.file = text.path;
+  extrinsic.pose = poseOfMatrix(text, number, matrix.data());
+  const std::string name = text.path.filename().string();
+  extrinsic.turns_map = name.find("velo_to_cam") != std::string::npos;
+  if (name.find("imu_to_velo") != std::string::npos) extrinsic.pose = extrinsic.pose.inverse();
+  return extrinsic;
 }
 
 }  // namespace
@@ -67,6 +93,7 @@ Extrinsic readExtrinsic(const std::filesystem::path& file) {
     }
     has_keys = has_keys || line.text.find(':') != std::string_view::npos;
   }
+  if (const std::optional<Extrinsic> found = readRotationAndTranslation(text)) return *found;
   std::string_view all(text.lines.front().text.data(),
                        static_cast<std::size_t>(text.lines.back().text.data() + text.lines.back().text.size() -
                                                 text.lines.front().text.data()));
@@ -77,7 +104,7 @@ Extrinsic readExtrinsic(const std::filesystem::path& file) {
     const std::size_t open = data == std::string_view::npos ? data : all.find('[', data);
     const std::size_t close = open == std::string_view::npos ? open : all.find(']', open);
     if (matrix == std::string_view::npos || close == std::string_view::npos)
-      throw FileError(file, "no line 'Tr:' (KITTI) and no matrix T_BS (EuRoC)");
+      throw FileError(file, "no line 'Tr:' (KITTI), no lines 'R:' and 'T:' (KITTI raw) and no matrix T_BS (EuRoC)");
     number += static_cast<std::size_t>(std::count(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(open), '\n'));
     all = all.substr(open, close - open);
   }

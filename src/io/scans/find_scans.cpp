@@ -9,8 +9,10 @@
 
 #include "gaussmap/io/scans/file_scans.h"
 #include "io/scans/assign_poses.h"
+#include "io/scans/keeping_points.h"
 #include "io/scans/pose_checks.h"
 #include "io/scans/scan_files.h"
+#include "sensor/sensor_motion.h"
 
 namespace gaussmap {
 using namespace detail;
@@ -49,11 +51,23 @@ void addScansOf(const std::filesystem::path& path, ListedScans& listed) {
     scan.time = info.time;
     scan.pose = info.pose.value_or(Pose());
     scan.source = file->poseSource();
+    scan.position_step = info.position_step;
     scan.lacks_pose = !info.pose && !scan.source.empty();
     scan.in_map_frame = file->inMapFrame();
     scan.fingerprint = pcd ? pcd->fingerprint() : std::hash<std::string>()(path.string() + ":" + std::to_string(i));
   }
   for (const std::string& warning : file->warnings()) listed.warnings.push_back(path.string() + ": " + warning);
+}
+
+/// Returns true if the points of scans with the same pose show that the sensor stood still.
+bool standsStill(FileScans& scans) {
+  const KeepingPoints keeping(scans);
+  try {
+    const std::optional<SameView> views = compareViews(scans);
+    return views && !views->moved();
+  } catch (const FileError&) {
+    return false;  // a later read reports it
+  }
 }
 
 }  // namespace
@@ -80,15 +94,17 @@ FoundScans findScans(const std::vector<std::filesystem::path>& inputs, const Fin
   }
   if (options.frame == ScanFrame::Map) dropUnneededRotations(kept, warnings);
   const PoseDiagnosis diagnosis = diagnosePoses(kept);
-  if (options.frame == ScanFrame::Sensor)
-    warnings.insert(warnings.end(), diagnosis.warnings.begin(), diagnosis.warnings.end());
   for (std::size_t i = 0; i < kept.size(); ++i) scans[i].pose = normalised(kept[i].pose);
-  return {FileScans(std::move(scans), options.frame, std::move(listed.files)),
-          std::move(warnings),
-          std::move(assigned.description),
-          std::move(assigned.without_pose),
-          std::move(as_read),
-          assigned.extrinsic};
+  FoundScans found{FileScans(std::move(scans), options.frame, std::move(listed.files)),
+                   std::move(warnings),
+                   std::move(assigned.description),
+                   std::move(assigned.without_pose),
+                   std::move(as_read),
+                   assigned.extrinsic};
+  if (options.frame == ScanFrame::Map) return found;
+  found.warnings.insert(found.warnings.end(), diagnosis.warnings.begin(), diagnosis.warnings.end());
+  if (!diagnosis.same_pose.empty() && !standsStill(found.scans)) found.warnings.push_back(diagnosis.same_pose);
+  return found;
 }
 
 FoundScans findScans(const std::vector<std::filesystem::path>& inputs, const std::filesystem::path& poses) {

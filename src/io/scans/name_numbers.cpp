@@ -8,17 +8,13 @@
 #include <set>
 #include <string_view>
 
+#include "io/scans/name_dates.h"
+
 namespace gaussmap::detail {
 namespace {
 
 constexpr std::uint64_t kMaxIndex = 100000000;  // larger numbers are times
 constexpr std::size_t kMaxRuns = 16;            // of digits in a name
-
-/// A run of digits in a name.
-struct DigitRun {
-  std::string_view digits;
-  char before = 0;  ///< the character between this run and the one before it; 0 if there is not exactly one
-};
 
 bool isNameDigit(char c) {
   return c >= '0' && c <= '9';
@@ -97,6 +93,43 @@ Fraction fractionOf(const NameTable& names, std::size_t run, char between) {
   return between == '.' && longest < 8 ? Fraction::Decimal : Fraction::Nanoseconds;
 }
 
+/// Returns the numbers of a run; empty if one of them is not a time of today.
+std::vector<Decimal> timesOfToday(const NameTable& names, std::size_t run) {
+  std::vector<Decimal> times;
+  for (const auto& row : names.rows()) {
+    const std::optional<Decimal> time = parseDecimal(row[run].digits);
+    if (!time || !isTimeOfDay(time->value())) return {};
+    times.push_back(*time);
+  }
+  return times;
+}
+
+/// Returns true if the digits behind a decimal point are a time of their own, as in "v2.1700000000.pcd": all have as
+/// many digits as a time of today, and they differ by less than a year. Fractions differ by more.
+bool isTimeBehindPoint(const NameTable& names, std::size_t run) {
+  const std::size_t size = names.rows().front()[run].digits.size();
+  if (size != 10 && size != 13 && size != 16 && size != 19) return false;
+  if (!names.all([&](const auto& row) { return row[run].digits.size() == size; })) return false;
+  const std::vector<Decimal> times = timesOfToday(names, run);
+  if (times.empty()) return false;
+  const auto [low, high] = std::minmax_element(times.begin(), times.end(),
+                                               [](const Decimal& a, const Decimal& b) { return a.digits < b.digits; });
+  return high->value() - low->value() < 0.02 * high->value();
+}
+
+/// Returns true if the runs are seconds since a start and nanoseconds, as in "12_300000000.pcd". Numbers of scans have
+/// leading zeros or fewer digits.
+bool isSmallSecondsAndNanoseconds(const NameTable& names, std::size_t run) {
+  std::size_t longest = 0;
+  const bool fits = names.all([&](const std::vector<DigitRun>& row) {
+    const std::string_view seconds = row[run + 1].digits, rest = row[run].digits;
+    longest = std::max(longest, rest.size());
+    const bool is_number = seconds.size() < 9 && (seconds.size() == 1 || seconds.front() != '0');
+    return is_number && (rest.size() == 9 || (rest.size() < 9 && (rest.size() == 1 || rest.front() != '0')));
+  });
+  return fits && longest == 9;
+}
+
 /// Returns the seconds and fractions in the runs `run` + 1 and `run`; empty if a name does not have them. `today`: only
 /// times of today, else only others.
 std::vector<Decimal> secondsAndFractions(const NameTable& names, std::size_t run, bool today) {
@@ -111,8 +144,12 @@ std::vector<Decimal> secondsAndFractions(const NameTable& names, std::size_t run
     return fits && isTimeOfDay(seconds->value());
   };
   const bool absolute = names.all(isAbsolute);
-  if (absolute != today || (!absolute && between != '.')) return {};
-  const Fraction fraction = absolute ? fractionOf(names, run, between) : Fraction::Decimal;
+  if (absolute != today) return {};
+  if (!absolute && (between == '.' ? isTimeBehindPoint(names, run) : !isSmallSecondsAndNanoseconds(names, run)))
+    return {};
+  const Fraction fraction = absolute         ? fractionOf(names, run, between)
+                            : between == '.' ? Fraction::Decimal
+                                             : Fraction::Nanoseconds;
   std::vector<Decimal> times;
   for (const auto& row : names.rows()) {
     std::string text(row[run].digits);
@@ -124,15 +161,10 @@ std::vector<Decimal> secondsAndFractions(const NameTable& names, std::size_t run
   return times;
 }
 
-/// Returns the numbers of a run if all of them are times of today.
+/// Returns the numbers of a run if all of them are times of today, and not the fractions of other numbers.
 std::vector<Decimal> wholeTimes(const NameTable& names, std::size_t run) {
-  std::vector<Decimal> times;
-  for (const auto& row : names.rows()) {
-    const std::optional<Decimal> time = parseDecimal(row[run].digits);
-    if (!time || !isTimeOfDay(time->value())) return {};
-    times.push_back(*time);
-  }
-  return names.varies(run) ? times : std::vector<Decimal>();
+  if (run + 1 < names.runs() && !secondsAndFractions(names, run, false).empty()) return {};
+  return names.varies(run) ? timesOfToday(names, run) : std::vector<Decimal>();
 }
 
 std::vector<std::uint64_t> indicesIn(const NameTable& names, std::size_t run) {
@@ -154,9 +186,10 @@ std::string withoutEndings(const std::string& name) {
   std::string stem = name;
   for (int endings = 0; endings < 2; ++endings) {
     const std::size_t point = stem.rfind('.');
-    if (point == std::string::npos || point == 0) break;
-    const auto isLetter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
-    if (std::none_of(stem.begin() + static_cast<std::ptrdiff_t>(point), stem.end(), isLetter)) break;
+    if (point == std::string::npos || point == 0 || point + 1 == stem.size()) break;
+    // Behind a digit there is a fraction: "1700000000.5_cloud" has no ending.
+    const auto first = static_cast<unsigned char>(stem[point + 1]);
+    if (std::isalpha(first) == 0 || stem.find('/', point) != std::string::npos) break;
     stem.resize(point);
   }
   return stem;
@@ -166,19 +199,30 @@ NameNumbers numbersIn(const std::vector<std::string>& names) {
   const NameTable table(names);
   NameNumbers numbers;
   std::size_t first_taken = 0, taken = 0;
+  const auto isFree = [&](std::size_t run) { return run < first_taken || run >= first_taken + taken; };
+  if (std::optional<NameDates> dates = datesIn(table.rows(), table.runs())) {
+    // All names of a log can have the date of its start.
+    bool differ = names.size() == 1;
+    for (std::size_t run = dates->first; run < dates->first + dates->runs; ++run) differ = differ || table.varies(run);
+    if (differ) numbers.times = std::move(dates->times), numbers.dates = true;
+    first_taken = dates->first, taken = dates->runs;
+  }
   const auto take = [&](std::vector<Decimal> times, std::size_t first, std::size_t count) {
     if (times.empty() || !numbers.times.empty()) return;
     numbers.times = std::move(times), first_taken = first, taken = count;
   };
+  const auto takePair = [&](std::size_t run, bool today) {
+    if (isFree(run) && isFree(run + 1)) take(secondsAndFractions(table, run, today), run, 2);
+  };
   for (std::size_t run = table.runs(); run-- > 0 && numbers.times.empty();) {
-    if (run > 0) take(secondsAndFractions(table, run - 1, true), run - 1, 2);
-    take(wholeTimes(table, run), run, 1);
+    if (run > 0) takePair(run - 1, true);
+    if (isFree(run)) take(wholeTimes(table, run), run, 1);
   }
-  const bool absolute = !numbers.times.empty();
-  for (std::size_t run = table.runs(); run-- > 1;) take(secondsAndFractions(table, run - 1, false), run - 1, 2);
+  const std::size_t first_absolute = first_taken, absolute = taken;
+  for (std::size_t run = table.runs(); run-- > 1;) takePair(run - 1, false);
   // Seconds since the start of a log look like "1.000007", where 7 may be the number of the scan.
   for (std::size_t run = 0; run < table.runs() && numbers.indices.empty(); ++run)
-    if (table.varies(run) && !(absolute && run >= first_taken && run < first_taken + taken))
+    if (table.varies(run) && !(run >= first_absolute && run < first_absolute + absolute))
       numbers.indices = indicesIn(table, run);
   return numbers;
 }

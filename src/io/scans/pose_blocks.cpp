@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "io/files/text.h"
+#include "io/files/written_position.h"
 #include "io/scans/pose_text.h"
 
 namespace gaussmap::detail {
@@ -35,6 +36,26 @@ std::optional<BlockShape> shapeOf(const PoseText& text) {
   return shape;
 }
 
+/// Four numbers per line can also be something else, or the columns of matrices.
+void requireMatrices(const PoseText& text, const BlockShape& shape) {
+  const std::size_t first = shape.before > 0 ? 1 : 0;
+  std::vector<double> elements;
+  for (std::size_t row = 0; row < 4; ++row) {
+    const std::vector<double> values = numbersIn(text, first + row);
+    elements.insert(elements.end(), values.begin(), values.end());
+  }
+  if (shape.rows == 4 || elements.size() < 12) return;
+  if (elements.size() == 16 && elements[3] == 0.0 && elements[7] == 0.0 && elements[11] == 0.0 && elements[15] == 1.0)
+    text.fail(text.lines[first].number, lastRowFault(elements.data()));
+  bool is_matrix = true;  // the elements of a rotation are at most 1
+  for (std::size_t i = 0; i < 12; ++i)
+    if (i % 4 < 3 && std::abs(elements[i]) > 1.1) is_matrix = false;
+  if (shape.before == 0 && !is_matrix)
+    text.fail(text.lines[first].number,
+              "4 numbers per line: no rotation, nor the rows of matrices; expected for example "
+              "'time x y z qx qy qz qw' (TUM)");
+}
+
 /// The numbers of the elements that are all 1, or times (BALM writes the time into the last element).
 void setBlockTimes(const PoseText& text, const std::vector<Decimal>& corners, PoseFile& file) {
   const TimeUnit unit = unitByMagnitude(largestOf(corners));
@@ -54,7 +75,9 @@ PoseFile readPoseBlocks(const PoseText& text) {
   const std::optional<BlockShape> shape = shapeOf(text);
   if (!shape)
     text.fail(text.lines.front().number, "not the 16 numbers of a matrix in one line, nor 4 lines of 4 numbers");
+  requireMatrices(text, *shape);
   PoseFile file;
+  RoundedPositions positions;
   std::vector<Decimal> corners;
   bool all_one = true;
   for (std::size_t line = 0; line < text.lines.size();) {
@@ -70,6 +93,7 @@ PoseFile readPoseBlocks(const PoseText& text) {
       entry.index = index->digits;
     }
     std::array<double, 16> elements{};
+    std::array<std::string_view, 3> position;
     for (std::size_t row = 0; row < shape->rows; ++row, ++line) {
       const std::vector<double> values = numbersIn(text, line);
       if (values.size() != 4)
@@ -77,8 +101,9 @@ PoseFile readPoseBlocks(const PoseText& text) {
                   line < text.lines.size() ? "expected the 4 numbers of row " + std::to_string(row + 1) + " of a matrix"
                                            : "the last matrix is not complete");
       std::copy(values.begin(), values.end(), elements.begin() + static_cast<std::ptrdiff_t>(4 * row));
-      if (row == 3 && !isLastRow(values) && !std::isnan(values[0]))
-        text.fail(text.lines[line].number, "expected 0 0 0 1 as the last row of a matrix");
+      if (row < 3) position[row] = fieldsOf(text, text.lines[line].text).back();
+      if (const std::string fault = row == 3 ? lastRowFault(elements.data(), true) : ""; !fault.empty())
+        text.fail(text.lines[line].number, fault);
       if (row == 3) {
         const std::optional<Decimal> corner = parseDecimal(fieldsOf(text, text.lines[line].text).back());
         all_one = all_one && (!corner || corner->value() == 1.0);
@@ -87,11 +112,14 @@ PoseFile readPoseBlocks(const PoseText& text) {
     }
     if (!std::all_of(elements.begin(), elements.begin() + 12, [](double value) { return std::isnan(value); }))
       entry.pose = poseOfMatrix(text, number, elements.data());
+    if (entry.pose) positions.add(stepOfRoundedPosition(position), elements[3], elements[7], elements[11]);
   }
   if (!all_one) {
     if (corners.size() != file.entries.size()) text.fail(text.lines.front().number, "not all matrices have a last row");
     setBlockTimes(text, corners, file);
   }
+  if (const std::string warning = positions.warning(); !warning.empty())
+    file.warnings.push_back(text.path.string() + ": " + warning);
   file.layout = shape->rows == 4 ? "4 x 4 matrices over 4 lines" : "3 x 4 matrices over 3 lines";
   if (!all_one) file.layout += ", the last element is the time";
   if (shape->before > 0) file.layout += ", each behind an index";
@@ -106,6 +134,7 @@ bool isPoseGraph(const PoseText& text) {
 
 PoseFile readPoseGraph(const PoseText& text) {
   PoseFile file;
+  RoundedPositions positions;
   std::string other;
   for (const TextLine& line : text.lines) {
     const std::vector<std::string_view> words = splitWords(line.text);
@@ -134,7 +163,11 @@ PoseFile readPoseGraph(const PoseText& text) {
     }
     if (const std::string fault = poseFault(pose); !fault.empty()) text.fail(line.number, fault);
     entry.pose = normalised(pose);
+    positions.add(stepOfRoundedPosition({words[2], words[3], is_space ? words[4] : "0"}), numbers[1], numbers[2],
+                  pose.translation.z());
   }
+  if (const std::string warning = positions.warning(); !warning.empty())
+    file.warnings.push_back(text.path.string() + ": " + warning);
   if (file.entries.empty())
     throw FileError(text.path, "a pose graph without VERTEX_SE3:QUAT or VERTEX_SE2" +
                                    (other.empty() ? std::string() : "; " + quote(other) + " is not supported"));

@@ -4,6 +4,10 @@
 #include <algorithm>
 #include <sstream>
 
+#include "core/same_pose.h"
+
+#include "io/files/written_position.h"
+
 namespace gaussmap::detail {
 namespace {
 
@@ -12,10 +16,6 @@ constexpr double kFarthest = 1e8;
 constexpr const char* kWayOut =
     "Give each scan its pose in the VIEWPOINT of its header or with --poses FILE, or use --frame map if "
     "the points are already in the map frame.";
-
-bool samePose(const Pose& a, const Pose& b) {
-  return a.translation == b.translation && a.rotation.coeffs() == b.rotation.coeffs();
-}
 
 std::string describe(const Pose& pose) {
   std::ostringstream text;
@@ -47,8 +47,8 @@ void warnOfIdenticalPoses(const std::vector<ScanPose>& scans, PoseDiagnosis& dia
   if (like_first.empty()) return;  // points in the map frame
   if (like_first.size() == scans.size()) {
     if (cloudsDiffer(like_first))
-      diagnosis.warnings.push_back("all " + std::to_string(scans.size()) + " scans have the same pose " +
-                                   describe(scans.front().pose) + " but their points differ. " + kWayOut);
+      diagnosis.same_pose = "all " + std::to_string(scans.size()) + " scans have the same pose " +
+                            describe(scans.front().pose) + " but their points differ. " + kWayOut;
     return;
   }
   const ScanPoses at_identity = scansAt(Pose{}, scans);
@@ -70,6 +70,19 @@ void warnOfFarPoses(const std::vector<ScanPose>& scans, PoseDiagnosis& diagnosis
   if (far.size() > 1) text << ", and " << far.size() - 1 << " more are beyond " << kFarthest << " m";
   text << ". Poses must be in metres.";
   diagnosis.warnings.push_back(text.str());
+}
+
+void warnOfRoundedPoses(const std::vector<ScanPose>& scans, PoseDiagnosis& diagnosis) {
+  RoundedPositions positions;
+  const ScanPose* first = nullptr;
+  for (const ScanPose& scan : scans) {
+    const Eigen::Vector3d& t = scan.pose.translation;
+    positions.add(scan.position_step, t.x(), t.y(), t.z());
+    if (first == nullptr && scan.position_step > 0.0) first = &scan;
+  }
+  if (first == nullptr) return;
+  if (const std::string warning = positions.warning(); !warning.empty())
+    diagnosis.warnings.push_back(first->path.string() + " and others: VIEWPOINT: " + warning);
 }
 
 }  // namespace
@@ -96,6 +109,7 @@ PoseDiagnosis diagnosePoses(const std::vector<ScanPose>& scans) {
   PoseDiagnosis diagnosis;
   warnOfIdenticalPoses(scans, diagnosis);
   warnOfFarPoses(scans, diagnosis);
+  warnOfRoundedPoses(scans, diagnosis);
   return diagnosis;
 }
 

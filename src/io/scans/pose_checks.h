@@ -21,8 +21,9 @@ struct ScanPose {
   std::string name = "";                                        ///< of the scan in a file with several scans
   std::optional<std::chrono::nanoseconds> time = std::nullopt;  ///< from the file
   std::string source = "";                                      ///< where the pose comes from; empty: the file has none
-  bool lacks_pose = false;    ///< true: other scans of the file have poses, but not this one
-  bool in_map_frame = false;  ///< true: no pose is needed
+  double position_step = 0.0;  ///< PcdHeader::viewpoint_step; 0 if the pose comes from elsewhere
+  bool lacks_pose = false;     ///< true: other scans of the file have poses, but not this one
+  bool in_map_frame = false;   ///< true: no pose is needed
 
   /// Returns the name for messages.
   std::string label() const { return path.string() + (name.empty() ? "" : ": " + name); }
@@ -34,13 +35,15 @@ void dropUnneededRotations(std::vector<ScanPose>& scans, std::vector<std::string
 
 struct PoseDiagnosis {
   std::vector<std::string> warnings;  ///< one or two sentences each, with file names and what to do
+  std::string same_pose;              ///< a warning if all scans have the same pose but differ; else empty
 };
 
 /// Checks the poses of all scans before a map is built from them. Throws FileError with the name of the scan if a pose
 /// cannot be used, see poseFault().
 ///
 /// Warns if different clouds have the same pose: either all scans, or those scans whose pose is the identity because
-/// they have no pose of their own. Warns of translations beyond 1e8 m.
+/// they have no pose of their own. Warns of translations beyond 1e8 m, and of positions
+/// that were written with too few digits.
 PoseDiagnosis diagnosePoses(const std::vector<ScanPose>& scans);
 
 }  // namespace gaussmap::detail

@@ -44,8 +44,9 @@ enum class RotationKind { Quaternion, Matrix, RollPitchYaw };
 struct PoseLayout {
   std::vector<PoseColumn> columns;
   RotationKind rotation = RotationKind::Quaternion;
-  std::optional<TimeUnit> unit;  ///< of the time, if it is stated
-  bool degrees = false;          ///< unit of roll, pitch and yaw
+  std::optional<TimeUnit> unit;                        ///< of the time, if it is stated
+  bool degrees = false;                                ///< unit of roll, pitch and yaw
+  std::optional<std::size_t> last_row = std::nullopt;  ///< column of the last row of a 4 x 4 matrix
 
   bool has(PoseColumn column) const;
   /// "time x y z qx qy qz qw"; matrices are "3 x 4 matrix".

@@ -2,6 +2,7 @@
 #include "gaussmap/io/scans/pose_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <unordered_map>
 #include <utility>
 
@@ -14,10 +15,6 @@ namespace gaussmap {
 using namespace detail;
 
 namespace {
-
-std::string nameOfEntry(const PoseFile::Entry& entry) {
-  return std::filesystem::path(entry.name).filename().string();
-}
 
 /// Returns true if no field of the first line is a number: the line names the columns.
 bool isHeader(const PoseText& text) {
@@ -66,7 +63,7 @@ PoseFile readTable(const PoseText& text, const PoseLayout& layout, std::size_t f
   if (std::find(pose, layout.columns.end(), PoseColumn::Index) != layout.columns.end()) file.indices_may_be_ids = true;
   if (layout.columns.front() == PoseColumn::Key) {  // now it is known what the key is
     const PoseFile::Entry& entry = file.entries.front();
-    file.layout.replace(0, 3, file.by_name ? "name" : entry.index ? "index" : "time");
+    file.layout.replace(0, 3, file.by_name ? "name" : entry.time ? "time" : "index");
   }
   return file;
 }
@@ -92,7 +89,28 @@ PoseFile readNamedTable(const PoseText& text, const std::string& columns) {
   return readTable(text, *named.layout, has_header ? 1 : 0, PoseFormat::Table);
 }
 
+/// Calls text.fail() for images.txt of COLMAP: `id qw qx qy qz tx ty tz camera name`, from the world to the camera.
+void requireNotColmap(const PoseText& text) {
+  const auto isHeading = [](const TextLine& comment) {
+    return comment.text.find("IMAGE_ID") != std::string_view::npos &&
+           comment.text.find("CAMERA_ID") != std::string_view::npos;
+  };
+  bool is_colmap = std::any_of(text.comments.begin(), text.comments.end(), isHeading);
+  const std::vector<std::string_view> words = splitWords(text.lines.front().text);
+  double ignored = 0.0;
+  if (words.size() == 10 && !parseNumber(words[9], ignored)) {
+    std::vector<double> v = numbersOf({words.begin(), words.end() - 1}, 0);
+    is_colmap = is_colmap || (v.size() == 9 && v[0] == std::floor(v[0]) && v[8] == std::floor(v[8]) &&
+                              std::abs(Eigen::Vector4d(v[1], v[2], v[3], v[4]).norm() - 1.0) < kQuaternionTolerance);
+  }
+  if (is_colmap)
+    text.fail(text.lines.front().number,
+              "looks like images.txt of COLMAP, whose poses go from the world to the camera and have no unit. Write "
+              "the poses from the camera to the world, in metres, as 'name x y z qx qy qz qw'");
+}
+
 PoseFile readAutomatic(const PoseText& text) {
+  requireNotColmap(text);
   if (isPoseGraph(text)) return readPoseGraph(text);
   if (isHeader(text)) return readNamedTable(text, "");
   if (isBlocks(text)) return readPoseBlocks(text);
@@ -116,53 +134,6 @@ void requireDifferentNames(const PoseFile& file) {
       throw FileError(file.path, "line " + std::to_string(entry.line) + ": " + quote(name) +
                                      " already has a pose in line " + std::to_string(first->second));
   }
-}
-
-/// Finds the entry of a scan by its name.
-class NameIndex {
- public:
-  explicit NameIndex(const PoseFile& file) {
-    for (const PoseFile::Entry& entry : file.entries) {
-      if (entry.name.empty()) continue;
-      by_folder_.emplace(folderAndFileName(entry.name), &entry);
-      const auto [place, is_new] = entries_.emplace(nameOfEntry(entry), &entry);
-      if (!is_new) place->second = nullptr;  // only the folders tell these entries apart
-    }
-  }
-  /// Finds the entry with the name of the folder and the file, of the file, or of the folder (000000/cloud.pcd).
-  const PoseFile::Entry* find(const std::filesystem::path& scan) const {
-    if (const auto found = by_folder_.find(folderAndFileName(scan)); found != by_folder_.end()) return found->second;
-    for (const std::filesystem::path& name : {scan.filename(), scan.stem(), std::filesystem::path(scanStem(scan)),
-                                              scan.lexically_normal().parent_path().filename()})
-      if (const auto found = entries_.find(name.string()); found != entries_.end() && found->second != nullptr)
-        return found->second;
-    return nullptr;
-  }
-
- private:
-  std::unordered_map<std::string, const PoseFile::Entry*> by_folder_;
-  std::unordered_map<std::string, const PoseFile::Entry*> entries_;
-};
-
-Pose poseOfEntry(const PoseFile& file, const PoseFile::Entry& entry) {
-  if (!entry.pose) throw FileError(file.path, "line " + std::to_string(entry.line) + " has no pose (NaN)");
-  return *entry.pose;
-}
-
-std::vector<Pose> posesByName(const PoseFile& file, const NameIndex& index,
-                              const std::vector<std::filesystem::path>& scans) {
-  std::vector<Pose> poses;
-  std::unordered_map<const PoseFile::Entry*, std::filesystem::path> users;
-  for (const std::filesystem::path& scan : scans) {
-    const PoseFile::Entry* const entry = index.find(scan);
-    if (!entry) throw FileError(file.path, "no pose for the scan " + folderAndFileName(scan));
-    const auto [user, is_new] = users.emplace(entry, scan);
-    if (!is_new)
-      throw FileError(file.path, "line " + std::to_string(entry->line) + ": " + quote(entry->name) + " names both " +
-                                     user->second.string() + " and " + scan.string());
-    poses.push_back(poseOfEntry(file, *entry));
-  }
-  return poses;
 }
 
 }  // namespace
@@ -202,24 +173,6 @@ PoseFile readPoseFile(const std::filesystem::path& path, PoseFormat format, cons
   if (file.format == PoseFormat::Automatic) file.format = PoseFormat::Matrix4;
   if (file.by_name) requireDifferentNames(file);
   return file;
-}
-
-std::vector<Pose> posesForScans(const PoseFile& file, const std::vector<std::filesystem::path>& scans) {
-  const NameIndex index(file);
-  bool by_name = file.by_name;
-  if (!by_name && !scans.empty()) {
-    by_name = true;
-    for (const std::filesystem::path& scan : scans) by_name = by_name && index.find(scan) != nullptr;
-  }
-  if (by_name) return posesByName(file, index, scans);
-
-  if (file.entries.size() != scans.size())
-    throw FileError(file.path, std::to_string(file.entries.size()) + " poses for " + std::to_string(scans.size()) +
-                                   " scans: give one line per scan in the order of the scans, or start each line with "
-                                   "the file name of its scan");
-  std::vector<Pose> poses;
-  for (const PoseFile::Entry& entry : file.entries) poses.push_back(poseOfEntry(file, entry));
-  return poses;
 }
 
 }  // namespace gaussmap

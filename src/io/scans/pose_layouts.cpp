@@ -108,9 +108,8 @@ bool bodyFits(const Samples& samples, const Body& body, std::size_t begin) {
   const std::size_t end = begin + body.columns.size();
   if (body.rotation == RotationKind::Quaternion)
     return fitsAll(samples, begin, end, [](const double* v) { return isUnitQuaternion(v + 3); });
-  return fitsAll(samples, begin, end, [&](const double* v) {
-    return isRigid(v) && (body.columns.size() < 16 || (v[12] == 0.0 && v[13] == 0.0 && v[14] == 0.0 && v[15] == 1.0));
-  });
+  return fitsAll(samples, begin, end,
+                 [&](const double* v) { return isRigid(v) && (body.columns.size() < 16 || lastRowFault(v).empty()); });
 }
 
 bool leadFits(const Samples& samples, const Columns& lead) {
@@ -133,6 +132,7 @@ PoseLayout layoutOf(const Samples& samples, const Columns& lead, const Body& bod
   if (samples.named) layout.columns = {PoseColumn::Name};
   layout.columns = layout.columns + lead + body.columns;
   layout.rotation = body.rotation;
+  if (body.columns.size() == 16) layout.last_row = layout.columns.size() - 4;
   return layout;
 }
 
@@ -168,6 +168,23 @@ std::optional<InferredLayout> usualLayout(const Samples& samples) {
   return std::nullopt;
 }
 
+constexpr std::size_t kEuRocNumbers = 17;  // time, pose with w first, velocity, biases
+
+/// Returns true if the numbers can be those of EuRoC: a unit quaternion with w first, and not the columns of a matrix.
+bool isEuRoc(const Samples& samples) {
+  return !samples.named && samples.numbers == kEuRocNumbers &&
+         fitsAll(samples, 4, 8, [](const double* v) { return isUnitQuaternion(v); }) &&
+         !fitsAll(samples, 1, 17, [](const double* v) { return v[3] == 0.0 && v[7] == 0.0 && v[11] == 0.0; });
+}
+
+InferredLayout layoutOfEuRoc() {
+  InferredLayout euroc;
+  euroc.layout.columns = Columns{PoseColumn::Time} + kPosition + kWxyz;
+  euroc.layout.unit = TimeUnit::Nanoseconds;
+  euroc.format = PoseFormat::EuRoc;
+  return euroc;
+}
+
 std::string countText(const Samples& samples) {
   return (samples.named ? "a name and " : "") + std::to_string(samples.numbers) + " numbers per line";
 }
@@ -178,6 +195,11 @@ InferredLayout inferLayout(const PoseText& text, std::size_t first) {
   if (first >= text.lines.size()) throw FileError(text.path, "no pose in this file, only a header line");
   const Samples samples = takeSamples(text, first);
   std::vector<InferredLayout> fitting = fittingLayouts(samples);
+  if (fitting.empty() && isEuRoc(samples)) {
+    if (isWhole(samples, 0, 1e17, 1e19)) return layoutOfEuRoc();
+    text.fail(samples.first_line,
+              "17 numbers: EuRoC? Its time is in whole nanoseconds. Add its header line, or use --pose-format euroc");
+  }
   // An eighth number in front (TUM) is far more common than one behind the pose.
   if (fitting.size() > 1 && samples.numbers == 8 && !samples.named)
     fitting.erase(std::remove_if(fitting.begin(), fitting.end(), [](const auto& one) { return one.index_behind; }),
@@ -221,6 +243,7 @@ PoseLayout layoutOfFormat(const PoseText& text, PoseFormat format, std::size_t f
   else if (samples.numbers > body.size())
     layout.columns = {PoseColumn::Key};
   layout.columns = layout.columns + body;
+  if (format == PoseFormat::Matrix4) layout.last_row = layout.columns.size() - 4;
   const std::size_t expected = layout.columns.size(), found = samples.numbers + (samples.named ? 1 : 0);
   if (found < expected || (found > expected && (is_matrix || is_angles)))
     text.fail(samples.first_line, countText(samples) + " do not fit --pose-format: expected '" + layout.text() + "'");

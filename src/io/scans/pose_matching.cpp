@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which pose belongs to which scan.
 #include <algorithm>
-#include <cmath>
+#include <limits>
+#include <numeric>
 #include <unordered_map>
+#include <utility>
 
 #include "gaussmap/io/scans/pose_file.h"
 #include "io/files/text.h"
@@ -20,6 +22,7 @@ struct ScanNumbers {
   std::vector<std::uint64_t> indices;  // empty, or one per scan
   std::vector<Instant> times;          // empty, or one per scan
   std::vector<Decimal> written;        // the times as written in the names; empty if the scans bring their own
+  bool dates = false;                  // the times are dates in names
 };
 
 ScanNumbers numbersOfScans(const std::vector<ScanKey>& scans) {
@@ -33,7 +36,7 @@ ScanNumbers numbersOfScans(const std::vector<ScanKey>& scans) {
     for (const ScanKey& scan : scans) numbers.times.push_back(*scan.time);
   } else {
     numbers.times = timesIn(found.times, unitByMagnitude(largestOf(found.times)));
-    if (!numbers.times.empty()) numbers.written = std::move(found.times);
+    if (!numbers.times.empty()) numbers.written = std::move(found.times), numbers.dates = found.dates;
   }
   return numbers;
 }
@@ -131,6 +134,12 @@ class EntriesByIndex {
                                       std::to_string(entry.line));
     return &entry;
   }
+  /// The lowest and the highest index.
+  std::pair<std::uint64_t, std::uint64_t> range() const {
+    std::pair<std::uint64_t, std::uint64_t> range(std::numeric_limits<std::uint64_t>::max(), 0);
+    for (const auto& [index, entry] : entries_) range = {std::min(range.first, index), std::max(range.second, index)};
+    return range;
+  }
   bool hasAll(const std::vector<std::uint64_t>& indices) const {
     return std::all_of(indices.begin(), indices.end(), [this](std::uint64_t index) { return find(index) != nullptr; });
   }
@@ -146,31 +155,86 @@ void matchByIndex(const PoseFile& file, const std::vector<ScanKey>& scans, const
   if (numbers.indices.empty() && !scans.empty())
     throw FileError(file.path, "the names of the scans have no numbers, for example " + quote(scans.front().name));
   const EntriesByIndex entries(file);
+  const auto [lowest, highest] = entries.range();
   for (std::size_t i = 0; i < scans.size(); ++i) {
-    if (const PoseFile::Entry* const entry = entries.find(numbers.indices[i]))
+    const std::uint64_t index = numbers.indices[i];
+    if (const PoseFile::Entry* const entry = entries.find(index))
       take(matched, i, *entry);
     else
       miss(matched, i,
-           entries.byLine() ? "the file has only " + std::to_string(file.entries.size()) + " poses"
-                            : "no index " + std::to_string(numbers.indices[i]));
+           entries.byLine()
+               ? "the file has only " + std::to_string(file.entries.size()) + " poses"
+               : "no index " + std::to_string(index) +
+                     (index < lowest ? "; the indices of the file start at " + std::to_string(lowest) : ""));
   }
-  matched.how = entries.byLine() ? "matched by the number in the name of the scan, counted from the first pose = 0"
+  matched.how = entries.byLine() ? "matched by the number in the name of the scan; number 0 is the first pose"
                                  : "matched by index, the number in the name of the scan";
+  if (!entries.byLine())
+    matched.how += " (the file has indices " + std::to_string(lowest) + " to " + std::to_string(highest) + ")";
 }
 
-void matchByOrder(const PoseFile& file, const std::vector<ScanKey>& scans, const ScanNumbers& numbers,
+/// Returns the entries in the order of their keys. `name`: of the keys, for messages. `sort`: false keeps the order of
+/// the file, with a warning if it is another one.
+template <typename KeyOf>
+std::vector<std::size_t> orderOfKeys(const PoseFile& file, bool sort, const std::string& name, const KeyOf& keyOf,
+                                     MatchedPoses& matched) {
+  std::vector<std::size_t> order(file.entries.size());
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  const auto isLess = [&](std::size_t a, std::size_t b) { return keyOf(file.entries[a]) < keyOf(file.entries[b]); };
+  const auto wrong = std::is_sorted_until(order.begin(), order.end(), isLess);
+  if (wrong == order.end()) return order;
+  const std::string where = file.path.string() + ": the lines are not in the order of their " + name + " (line " +
+                            std::to_string(file.entries[*wrong].line) + ")";
+  if (!sort) {
+    matched.warnings.push_back(where + ", but they are matched in the order of the file");
+    return order;
+  }
+  std::stable_sort(order.begin(), order.end(), isLess);
+  for (std::size_t i = 1; i < order.size(); ++i)
+    if (!isLess(order[i - 1], order[i])) {
+      std::string fault = "lines " + std::to_string(file.entries[order[i - 1]].line) + " and " +
+                          std::to_string(file.entries[order[i]].line) + " have equal ";
+      fault.append(name).append(", and the lines are not in the order of their ").append(name);
+      throw FileError(file.path, fault.append(", so they cannot be matched by order"));
+    }
+  matched.warnings.push_back(where + ", so they are sorted before they are matched by order");
+  matched.how = "sorted by " + name + " and ";
+  return order;
+}
+
+/// Returns the entries in the order of their times or indices, if all have one and `sort` is set; otherwise in the
+/// order of the file.
+std::vector<std::size_t> orderOfEntries(const PoseFile& file, bool sort, MatchedPoses& matched) {
+  if (hasTimes(file))
+    return orderOfKeys(
+        file, sort, "times", [](const PoseFile::Entry& entry) { return *entry.time; }, matched);
+  if (hasIndices(file))
+    return orderOfKeys(
+        file, sort, "indices", [](const PoseFile::Entry& entry) { return *entry.index; }, matched);
+  std::vector<std::size_t> order(file.entries.size());
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  return order;
+}
+
+/// `sort`: false keeps the order of the file.
+void matchByOrder(const PoseFile& file, const std::vector<ScanKey>& scans, const ScanNumbers& numbers, bool sort,
                   MatchedPoses& matched) {
   if (file.entries.size() != scans.size()) {
     std::string why;
     if (hasTimes(file) && numbers.times.empty() && !scans.empty())
       why = "the names of the scans have no times, for example " + quote(scans.front().name) + ". ";
+    else if (numbers.indices.empty() && scans.size() > 1)
+      why = "the names of the scans have no number in common, for example " + quote(scans[0].name) + " and " +
+            quote(scans[1].name) + ". ";
     throw FileError(file.path, std::to_string(file.entries.size()) + " poses for " + std::to_string(scans.size()) +
                                    (scans.size() == 1 ? " scan: " : " scans: ") + why +
                                    "Give one line per scan in the order of the scans, start each line with the name of "
-                                   "its scan, or use --match-poses index if the number in a name is that of the line");
+                                   "its scan, or use --match-poses index if the number in the name of a scan is its "
+                                   "line number, counted from 0");
   }
-  for (std::size_t i = 0; i < scans.size(); ++i) take(matched, i, file.entries[i]);
-  matched.how = "matched by order";
+  const std::vector<std::size_t> order = orderOfEntries(file, sort, matched);
+  for (std::size_t i = 0; i < scans.size(); ++i) take(matched, i, file.entries[order[i]]);
+  matched.how += "matched by order";
 }
 
 void matchByTime(const PoseFile& file, const std::vector<ScanKey>& scans, const ScanNumbers& numbers,
@@ -187,7 +251,8 @@ void matchByTime(const PoseFile& file, const std::vector<ScanKey>& scans, const 
     unit = ", times in names in " + unitName(chosen);
   }
   poses.match(times, scans, options, matched);
-  if (matched.missing.size() < times.size()) matched.how += unit;
+  if (numbers.dates) unit = "; dates in names are read as UTC";
+  if (matched.missing.size() < times.size() || numbers.dates) matched.how += unit;
 }
 
 PoseMatch chooseMatch(const PoseFile& file, const std::vector<ScanKey>& scans, const ScanNumbers& numbers) {
@@ -206,6 +271,7 @@ PoseMatch chooseMatch(const PoseFile& file, const std::vector<ScanKey>& scans, c
 MatchedPoses matchPoses(const PoseFile& file, const std::vector<ScanKey>& scans, const PoseMatching& options) {
   MatchedPoses matched;
   matched.poses.resize(scans.size());
+  matched.warnings = file.warnings;
   const ScanNumbers numbers = numbersOfScans(scans);
   matched.match = options.match == PoseMatch::Automatic ? chooseMatch(file, scans, numbers) : options.match;
   switch (matched.match) {
@@ -219,9 +285,27 @@ MatchedPoses matchPoses(const PoseFile& file, const std::vector<ScanKey>& scans,
       matchByTime(file, scans, numbers, options, matched);
       break;
     default:
-      matchByOrder(file, scans, numbers, matched);
+      matchByOrder(file, scans, numbers, options.match == PoseMatch::Automatic, matched);
   }
   return matched;
+}
+
+std::vector<Pose> posesForScans(const PoseFile& file, const std::vector<std::filesystem::path>& scans) {
+  std::vector<ScanKey> keys;
+  keys.reserve(scans.size());
+  for (const std::filesystem::path& scan : scans) keys.push_back({scan.string(), std::nullopt});
+  const EntriesByName entries(file);
+  const bool all_named =
+      std::all_of(keys.begin(), keys.end(), [&](const ScanKey& key) { return entries.find(key.name) != nullptr; });
+  PoseMatching options;
+  options.match = file.by_name || all_named ? PoseMatch::Name : PoseMatch::Order;
+  const MatchedPoses matched = matchPoses(file, keys, options);
+  if (!matched.missing.empty())
+    throw FileError(file.path, keys[matched.missing[0].scan].name + " has no pose: " + matched.missing[0].reason);
+  std::vector<Pose> poses;
+  poses.reserve(scans.size());
+  for (const std::optional<Pose>& pose : matched.poses) poses.push_back(*pose);
+  return poses;
 }
 
 }  // namespace gaussmap

@@ -5,12 +5,26 @@
 #include <limits>
 
 #include "io/files/text.h"
+#include "io/files/written_position.h"
 #include "io/scans/pose_text.h"
 
 namespace gaussmap::detail {
 namespace {
 
 constexpr std::uint64_t kMaxKeyIndex = 100000000;  // larger whole numbers are times
+constexpr std::array<PoseColumn, 3> kPositionColumns = {PoseColumn::X, PoseColumn::Y, PoseColumn::Z};
+
+/// Returns the index that a number is, also if it is written as 7.000000; nullopt if it is not whole or too large.
+std::optional<std::uint64_t> indexOf(const Decimal& number) {
+  std::uint64_t index = number.digits;
+  for (int i = 0; i < number.exponent && index > 0 && index < kMaxKeyIndex; ++i) index *= 10;
+  for (int i = number.exponent; i < 0 && index > 0; ++i) {
+    if (index % 10 != 0) return std::nullopt;
+    index /= 10;
+  }
+  if (index >= kMaxKeyIndex || (number.negative && index > 0)) return std::nullopt;
+  return index;
+}
 
 /// Reads the lines of a table one by one.
 class TableReader {
@@ -26,6 +40,8 @@ class TableReader {
     PoseFile file;
     for (std::size_t i = first; i < text_.lines.size(); ++i) file.entries.push_back(parse(text_.lines[i]));
     setTimes(file);
+    if (const std::string warning = positions_.warning(); !warning.empty())
+      file.warnings.push_back(text_.path.string() + ": " + warning);
     return file;
   }
 
@@ -56,8 +72,29 @@ class TableReader {
       ++pose_numbers;
       if (std::isnan(value)) ++nan_numbers;
     }
+    if (layout_.last_row && nan_numbers < pose_numbers) requireLastRow(line.number, fields);
     if (nan_numbers < pose_numbers) entry.pose = pose(line.number);
+    if (entry.pose) addPosition(fields, *entry.pose);
     return entry;
+  }
+
+  void requireLastRow(std::size_t line, const std::vector<std::string_view>& fields) const {
+    std::array<double, 16> elements{};
+    for (std::size_t i = 0; i < elements.size(); ++i)
+      if (const std::string_view field = fields[*layout_.last_row - 12 + i]; !parseNumber(field, elements[i]))
+        text_.fail(line, quote(field) + " is not a number");
+    if (const std::string fault = lastRowFault(elements.data()); !fault.empty()) text_.fail(line, fault);
+  }
+
+  void addPosition(const std::vector<std::string_view>& fields, const Pose& pose) {
+    std::array<std::string_view, 3> words;
+    for (std::size_t i = 0; i < layout_.columns.size(); ++i)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        if (layout_.columns[i] == kPositionColumns[axis] ||
+            layout_.columns[i] == matrixColumn(4 * static_cast<int>(axis) + 3))
+          words[axis] = fields[i];
+    const Eigen::Vector3d& t = pose.translation;
+    positions_.add(stepOfRoundedPosition(words), t.x(), t.y(), t.z());
   }
 
   void setKey(PoseColumn column, std::string_view field, PoseFile::Entry& entry) {
@@ -106,12 +143,14 @@ class TableReader {
     const bool has_time = layout_.has(PoseColumn::Time) || layout_.has(PoseColumn::Seconds);
     if ((!has_key && !has_time) || (has_key && named_)) return;
     const bool has_index = layout_.has(PoseColumn::Index);
-    if (!has_index && std::all_of(keys_.begin(), keys_.end(), [](const std::optional<Decimal>& key) {
-          return key && key->whole && key->digits < kMaxKeyIndex;
-        })) {
-      for (std::size_t i = 0; i < keys_.size(); ++i) file.entries[i].index = keys_[i]->digits;
-      if (has_key) return;
-      file.indices_may_be_ids = true;  // a header calls them times, but they can be the numbers of scans
+    if (!has_index && std::all_of(keys_.begin(), keys_.end(),
+                                  [](const std::optional<Decimal>& key) { return key && indexOf(*key).has_value(); })) {
+      for (std::size_t i = 0; i < keys_.size(); ++i) file.entries[i].index = indexOf(*keys_[i]);
+      const bool has_digits_only =
+          std::all_of(keys_.begin(), keys_.end(), [](const std::optional<Decimal>& key) { return key->whole; });
+      if (has_key && has_digits_only) return;
+      // A header calls them times, or they are written as 7.000000, but they can be the numbers of scans.
+      file.indices_may_be_ids = true;
     }
     double largest = 0.0;
     for (const std::optional<Decimal>& key : keys_)
@@ -137,6 +176,7 @@ class TableReader {
   std::size_t width_ = 0;
   std::array<double, static_cast<std::size_t>(PoseColumn::MEnd)> numbers_{};
   std::vector<std::optional<Decimal>> keys_, nanoseconds_;
+  RoundedPositions positions_;
 };
 
 }  // namespace

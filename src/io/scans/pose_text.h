@@ -42,6 +42,9 @@ std::vector<double> numbersOf(const std::vector<std::string_view>& fields, std::
 Pose poseOfMatrix(const PoseText& text, std::size_t line, const double* elements);
 /// Returns true if the 12 numbers are a rotation and a translation.
 bool isRigid(const double* elements);
+/// Returns what is wrong with the last row of the 16 numbers of a matrix; empty if it is 0 0 0 1, or all are NaN.
+/// `any_corner`: the last element can be another number.
+std::string lastRowFault(const double* elements, bool any_corner = false);
 
 /// Reads a table with the given columns, from the line `first` on.
 PoseFile readPoseTable(const PoseText& text, const PoseLayout& layout, std::size_t first);

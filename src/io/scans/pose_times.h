@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "gaussmap/io/scans/pose_file.h"
@@ -27,12 +28,21 @@ class PoseTimes {
 
  private:
   struct Step;
+  /// The largest accepted times between a scan and its nearest pose.
+  struct Limits {
+    Instant nearest{};       ///< if the scan gets the nearest pose
+    Instant outside{};       ///< before the first pose or behind the last one, without a warning
+    Instant interpolated{};  ///< if the scan is between two poses, which are interpolated
+    Instant usual{};         ///< the same as interpolated, without a warning
+  };
   const PoseFile::Entry& entry(std::size_t i) const { return file_.entries[order_[i]]; }
   Instant time(std::size_t i) const { return *entry(i).time; }
   std::size_t nearest(Instant time) const;
-  Instant limit(const std::vector<Instant>& times, const PoseMatching& options) const;
+  Limits limits(const std::vector<Instant>& times, const PoseMatching& options) const;
   std::optional<Step> stepAt(Instant time) const;
   void requireOne(std::size_t i) const;
+  void warnOfSharedPoses(const std::vector<Instant>& times, const std::vector<ScanKey>& scans,
+                         const std::vector<std::optional<std::size_t>>& nearest, MatchedPoses& matched) const;
 
   const PoseFile& file_;
   std::vector<std::size_t> order_;  // of the entries, by time

@@ -5,30 +5,16 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "gaussmap/version.h"
+#include "io/files/decimal.h"
 
 // Times as text. A double does not hold nanoseconds since 1970, so times stay decimal until they become integers.
 namespace gaussmap::detail {
 
 /// A time since the zero of some clock.
 using Instant = std::chrono::nanoseconds;
-
-/// A decimal number as written: digits * 10^exponent. Digits behind the 19th are dropped.
-struct Decimal {
-  std::uint64_t digits = 0;
-  int exponent = 0;
-  bool negative = false;
-  bool whole = false;  ///< written with digits only
-
-  /// Returns the nearest double.
-  double value() const;
-};
-
-/// Returns nullopt if the word is not a finite decimal number.
-GAUSSMAP_API std::optional<Decimal> parseDecimal(std::string_view word);
 
 enum class TimeUnit { Seconds, Milliseconds, Microseconds, Nanoseconds };
 inline constexpr TimeUnit kTimeUnits[] = {TimeUnit::Seconds, TimeUnit::Milliseconds, TimeUnit::Microseconds,

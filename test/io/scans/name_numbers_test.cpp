@@ -60,6 +60,67 @@ TEST(NameNumbers, ReadFractionsAsDecimals) {
   EXPECT_EQ(timesOf({"scan_0.50.pcd", "scan_12.25.pcd"}), (std::vector<std::int64_t>{500000000, 12250000000}));
 }
 
+TEST(NameNumbers, KeepTheFractionOfATimeWithSomethingBehindIt) {
+  const std::vector<std::int64_t> expected = {1700000000500000000, 1700000001250000000};
+  for (const std::string behind : {"_cloud.pcd", "-cloud.pcd", "_lidar1.pcd", "s.pcd", ".cloud.pcd", "_raw.pcd.gz",
+                                   "_0.pcd", "/cloud.pcd", "_v2/cloud.pcd"}) {
+    EXPECT_EQ(timesOf({"1700000000.500000" + behind, "1700000001.250000" + behind}), expected) << behind;
+    EXPECT_EQ(timesOf({"cloud_1700000000.5" + behind, "cloud_1700000001.25" + behind}), expected) << behind;
+    EXPECT_EQ(timesOf({"1700000000_500000000" + behind, "1700000001_250000000" + behind}), expected) << behind;
+  }
+}
+
+TEST(NameNumbers, ReadSecondsSinceTheStart) {
+  const std::vector<std::int64_t> expected = {100000000, 600000000, 1100000000};
+  EXPECT_EQ(timesOf({"0.100000000.pcd", "0.600000000.pcd", "1.100000000.pcd"}), expected);
+  EXPECT_EQ(timesOf({"0_100000000.pcd", "0_600000000.pcd", "1_100000000.pcd"}), expected);
+  EXPECT_EQ(timesOf({"cloud_0_100000000_raw.pcd", "cloud_0_600000000_raw.pcd", "cloud_1_100000000_raw.pcd"}), expected);
+  EXPECT_EQ(timesOf({"1234_600000000.pcd", "1235_5000000.pcd"}),
+            (std::vector<std::int64_t>{1234600000000, 1235005000000}));  // not padded
+  EXPECT_EQ(timesOf({"5.600000000.pcd"}), std::vector<std::int64_t>{5600000000});
+  EXPECT_TRUE(timesOf({"drive_11_frame_3.pcd", "drive_12_frame_4.pcd"}).empty());
+  EXPECT_TRUE(timesOf({"12_100.pcd", "13_200.pcd"}).empty());
+}
+
+TEST(NameNumbers, ReadTimesBehindOtherNumbers) {
+  const std::vector<std::int64_t> expected = {1700000000000000000, 1700000001000000000};
+  EXPECT_EQ(timesOf({"v2.1700000000.pcd", "v2.1700000001.pcd"}), expected);
+  EXPECT_EQ(timesOf({"7.1700000000000.pcd", "8.1700000001000.pcd"}), expected);
+  EXPECT_EQ(timesOf({"000007_1700000000000.pcd", "000008_1700000001000.pcd"}), expected);
+}
+
+TEST(NameNumbers, ReadDatesAsUtc) {
+  const std::vector<std::int64_t> expected = {1700000000000000000, 1700000000500000000, 1700000061250000000};
+  const struct {
+    const char *first, *second, *third;
+  } names[] = {
+      {"2023-11-14_22-13-20.0.pcd", "2023-11-14_22-13-20.5.pcd", "2023-11-14_22-14-21.25.pcd"},
+      {"20231114T221320.000.pcd", "20231114T221320.500.pcd", "20231114T221421.250.pcd"},
+      {"scan_20231114_221320_000_a.pcd", "scan_20231114_221320_500_a.pcd", "scan_20231114_221421_250_a.pcd"},
+      {"2023_11_14_22_13_20_000000.pcd", "2023_11_14_22_13_20_500000.pcd", "2023_11_14_22_14_21_250000.pcd"},
+      {"20231114221320000.pcd", "20231114221320500.pcd", "20231114221421250.pcd"},
+      {"20231114_221320000.pcd", "20231114_221320500.pcd", "20231114_221421250.pcd"},
+  };
+  for (const auto& [first, second, third] : names) {
+    EXPECT_EQ(timesOf({first, second, third}), expected) << first;
+    EXPECT_TRUE(numbersIn({first, second, third}).dates);
+    EXPECT_TRUE(numbersIn({first, second, third}).indices.empty()) << first;
+  }
+  EXPECT_EQ(timesOf({"2024-02-29-12-00-00.pcd", "2024-03-01-00-00-00.pcd"}),
+            (std::vector<std::int64_t>{1709208000000000000, 1709251200000000000}));
+}
+
+TEST(NameNumbers, TakeOneDateOfAllNamesForTheNameOfTheLog) {
+  const NameNumbers numbers = numbersIn({"20231114_221320_000.pcd", "20231114_221320_001.pcd"});
+  EXPECT_TRUE(numbers.times.empty());
+  EXPECT_EQ(numbers.indices, (std::vector<std::uint64_t>{0, 1}));
+  EXPECT_EQ(timesOf({"20231114_221320_1700000000.5.pcd", "20231114_221320_1700000001.5.pcd"}),
+            (std::vector<std::int64_t>{1700000000500000000, 1700000001500000000}));
+  EXPECT_FALSE(numbersIn({"20239914_221320.pcd", "20239914_221321.pcd"}).dates);  // no such month
+  EXPECT_FALSE(numbersIn({"20230229_221320.pcd", "20230229_221321.pcd"}).dates);  // no such day in 2023
+  EXPECT_TRUE(numbersIn({"20240229_221320.pcd", "20240229_221321.pcd"}).dates);
+}
+
 TEST(NameNumbers, ReadTheNumberThatDiffers) {
   EXPECT_EQ(numbersIn({"000007.pcd", "000012.PCD"}).indices, (std::vector<std::uint64_t>{7, 12}));
   EXPECT_EQ(numbersIn({"0000000007.pcd.gz"}).indices, std::vector<std::uint64_t>{7});
@@ -75,7 +136,6 @@ TEST(NameNumbers, FindNothingWhereNamesHaveNothing) {
     EXPECT_TRUE(numbersIn(names).indices.empty());
     EXPECT_TRUE(numbersIn(names).times.empty());
   }
-  EXPECT_TRUE(numbersIn({"20230710_143000.pcd", "20230710_143001.pcd"}).times.empty());  // a date is no time
 }
 
 }  // namespace

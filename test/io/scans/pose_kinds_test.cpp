@@ -129,7 +129,93 @@ TEST(PoseKinds, ReadsIndicesInFrontAndBehind) {
   EXPECT_TRUE(behind.indices_may_be_ids);
   EXPECT_TRUE(parse("#stamp x y z qx qy qz qw id\n0.5 " + kQuaternion + " 12\n").indices_may_be_ids);
   EXPECT_FALSE(parse("num,t,x,y,z,qx,qy,qz,qw\n3,0.5,4,5,6,0,0,0.70711,0.70711\n").indices_may_be_ids);
-  EXPECT_FALSE(parse("12.0 " + kQuaternion + "\n").entries[0].index);  // a time
+  EXPECT_FALSE(parse("12.5 " + kQuaternion + "\n").entries[0].index);  // a time
+}
+
+TEST(PoseKinds, ReadsWholeDecimalsAsTimesAndIndices) {
+  for (const std::string key : {"12.0", "12.000000", "1.200000000000000000e+01"}) {
+    const PoseFile file = parse(key + " " + kQuaternion + "\n");
+    EXPECT_EQ(file.entries[0].index, 12u) << key;
+    EXPECT_EQ(file.entries[0].time, std::chrono::seconds(12)) << key;
+    EXPECT_TRUE(file.indices_may_be_ids);
+    EXPECT_EQ(file.layout, "time x y z qx qy qz qw");
+  }
+  EXPECT_FALSE(parse("1700000000.0 " + kQuaternion + "\n").entries[0].index);
+  EXPECT_FALSE(parse("12.0 " + kQuaternion + "\n12.5 " + kQuaternion + "\n").entries[0].index);
+}
+
+TEST(PoseKinds, DropsCommentsBehindTheNumbers) {
+  for (const char* const comment : {" # scan", "\t# 1 2 3", " // x", " % x"}) {
+    expectQuarterTurn(parse("0.5 " + kQuaternion + comment + "\n"));
+    expectQuarterTurn(parse("a #1.pcd " + kQuaternion + comment + "\n"));
+    expectQuarterTurn(parse(withCommas("0.5 " + kQuaternion) + comment + "\n"));
+    expectQuarterTurn(parse(kMatrix + comment + "\n"));
+  }
+  EXPECT_EQ(parse("run 5 #2.pcd " + kQuaternion + "\n").entries[0].name, "run 5 #2.pcd");
+}
+
+TEST(PoseKinds, RecognisesEuRocWithoutItsHeader) {
+  const std::string line = "4 5 6 0.70711 0 0 0.70711 0.1 0.2 0.3 -0.002 0.02 0.07 -0.01 0.1 0.09\n";
+  for (const PoseFormat format : {PoseFormat::Automatic, PoseFormat::EuRoc}) {
+    const PoseFile file = parse(withCommas("1700000000500000000 " + line), format);
+    expectQuarterTurn(file);
+    EXPECT_EQ(file.format, PoseFormat::EuRoc);
+    EXPECT_EQ(file.entries[0].time, std::chrono::milliseconds(1700000000500));
+  }
+  expectRefused("1700000000.5 " + line, {"line 1", "17 numbers: EuRoC?", "--pose-format euroc"});
+}
+
+TEST(PoseKinds, RefusesMatricesWrittenColumnByColumn) {
+  const std::string by_columns = "0 1 0 0 -1 0 0 0 0 0 1 0 4 5 6 1";
+  for (const std::string key : {"", "7 ", "1700000000.5 ", "a.pcd "})
+    expectRefused(key + by_columns + "\n",
+                  {"line 1", "the last row of the 4 x 4 matrix is 4 5 6 1", "column by column?"});
+  expectRefused("0 1 0 0\n-1 0 0 0\n0 0 1 0\n4 5 6 1\n", {"the last row of the 4 x 4 matrix is 4 5 6 1", "column"});
+  expectRefused("1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n0 1 0 0\n-1 0 0 0\n0 0 1 0\n4 5 6 1\n", {"line 8", "4 5 6 1"});
+  expectRefused(kMatrix + " 0 0 0 1\n" + kMatrix + " 0 0 0 2\n", {"line 2", "is 0 0 0 2 instead of 0 0 0 1"});
+  EXPECT_FALSE(
+      parse(kMatrix + " 0 0 0 1\n" + withCommas("nan", "") + " nan nan nan nan nan nan nan nan nan nan nan 0 0 0 1\n")
+          .entries[1]
+          .pose);
+}
+
+TEST(PoseKinds, NamesTheMistakeOfOtherTables) {
+  expectRefused("1700000000.5 1 2 3\n1700000001.5 2 2 3\n1700000002.5 3 2 3\n", {"4 numbers per line: no rotation"});
+  expectRefused("0.0 1 2 0.1\n0.5 2 2 0.1\n1.0 3 2 0.1\n1.5 3 2 0.1\n", {"4 numbers per line: no rotation"});
+  const std::string commas = "0,5 4,5 5,5 6,5 0,0 0,0 0,7 0,7";
+  for (const char* const separator : {" ", "\t", ";"})
+    for (const std::string key : {"", "a.pcd "})
+      expectRefused(withCommas(key + commas, separator) + "\n", {"line 1", "decimal comma: write 0.5, not 0,5"});
+  expectRefused(std::string("\xFF\xFE") + "0", {"the file is UTF-16: save it as UTF-8"});
+  expectRefused(std::string("0\0.\0", 4), {"UTF-16"});
+  const std::string image = "1 0.70711 0 0 0.70711 4 5 6 1 000000.png\n100.5 200.5 -1\n";
+  expectRefused(image, {"line 1", "COLMAP"});
+  expectRefused("#   IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n" + image, {"COLMAP"});
+}
+
+TEST(PoseKinds, WarnsOfRoundedPositions) {
+  const struct {
+    const char *first, *second, *step;
+  } files[] = {
+      {"1 455123 5.40457e+06 310", "2 455125 5.40457e+06 310.2", "10 m"},  // std::ostream
+      {"1 4.551234e+05 5.404568e+06 3.100000e+02", "2 4.551254e+05 5.404569e+06 3.101000e+02", "1 m"},
+      {"1 3000.12 52000.1 12", "2 3001.12 52000.2 12", "0.1 m"},
+  };
+  for (const auto& [first, second, step] : files) {
+    const PoseFile file = parse(std::string(first) + " 0 0 0 1\n" + second + " 0 0 0 1\n");
+    ASSERT_EQ(file.warnings.size(), 1u) << first;
+    EXPECT_NE(file.warnings[0].find("rounded to steps of " + std::string(step)), std::string::npos) << file.warnings[0];
+  }
+  EXPECT_EQ(parse("1 0 0 455123 0 1 0 5404567 0 0 1 310\n1 0 0 455124 0 1 0 5404568 0 0 1 310\n").warnings.size(), 1u);
+  const std::string block = "1 0 0 455123\n0 1 0 5404567\n0 0 1 310\n0 0 0 1\n";
+  EXPECT_EQ(parse(block + block).warnings.size(), 1u);
+  const std::string vertex = " 455123 5404567 310 0 0 0 1\n";
+  EXPECT_EQ(parse("VERTEX_SE3:QUAT 0" + vertex + "VERTEX_SE3:QUAT 1" + vertex).warnings.size(), 1u);
+  for (const char* const exact :
+       {"455123.12 5404567.81 310.00", "455123.0 5404567.5 310.0", "100000 200000 0", "123.456 1.5 0", "1234.56 1 0",
+        "4.551234567e+05 5.404567891e+06 3.1e+02", "999.999 0.1 0"})
+    EXPECT_TRUE(parse(std::string("1 ") + exact + " 0 0 0 1\n2 " + exact + " 0 0 0 1\n").warnings.empty()) << exact;
+  EXPECT_TRUE(parse("1 455123 5.40457e+06 310 0 0 0 1\n").warnings.empty());  // one alone can be exact
 }
 
 TEST(PoseKinds, ReadsSecondsAndNanosecondsWithoutAHeader) {
@@ -199,9 +285,22 @@ TEST(Extrinsics, AreReadFromEveryUsualFile) {
     EXPECT_FALSE(extrinsic.turns_map);
   }
   EXPECT_TRUE(readExtrinsic(directory.write("calib.txt", "P0: 1 2 3\nTr: " + kMatrix + "\n")).turns_map);
-  for (const char* const text :
-       {"", "1 2 3", "P0: 1 2 3\n", "Tr: 1 2 3\n", "T_BS:\n data: [1, 2]\n", "1 2 3 0 0 0 2\n"})
+  EXPECT_TRUE(readExtrinsic(directory.write("calib.txt", "P0 1 2 3\nTr " + kMatrix + "\n")).turns_map);
+  for (const char* const text : {"", "1 2 3", "P0: 1 2 3\n", "Tr 1 2 3\n", "R: 1 0 0\nT: 1 2 3\n", "Tr: 1 2 3\n",
+                                 "T_BS:\n data: [1, 2]\n", "1 2 3 0 0 0 2\n"})
     EXPECT_THROW(readExtrinsic(directory.write("bad.txt", text)), FileError) << text;
+}
+
+TEST(Extrinsics, AreReadFromTheRawDataOfKitti) {
+  const TemporaryDirectory directory;
+  const std::string text = "calib_time: 09-Jan-2012 13:57:47\nR: 0 -1 0 1 0 0 0 0 1\nT: 4 5 6\ndelta_f: 0 0\n";
+  const Extrinsic camera = readExtrinsic(directory.write("calib_velo_to_cam.txt", text));
+  EXPECT_EQ(camera.pose.translation, Eigen::Vector3d(4, 5, 6));
+  EXPECT_TRUE(camera.turns_map);
+  const Extrinsic imu = readExtrinsic(directory.write("calib_imu_to_velo.txt", text));  // of the IMU in the lidar
+  EXPECT_NEAR((imu.pose.translation - Eigen::Vector3d(-5, 4, -6)).norm(), 0.0, 1e-12);
+  EXPECT_FALSE(imu.turns_map);
+  EXPECT_FALSE(readExtrinsic(directory.write("other.txt", text)).turns_map);
 }
 
 }  // namespace

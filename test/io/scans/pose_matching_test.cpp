@@ -145,6 +145,134 @@ TEST(PoseMatching, TakesNamesWithoutTheirEndings) {
   EXPECT_EQ(linesFor(file, {"a.pcd", "c.pcd", "d.pcd"}, PoseMatch::Name), (Lines{2, 3, 0}));
 }
 
+/// The warnings and reasons in one text.
+std::string remarksOf(const PoseFile& file, const std::vector<std::string>& names, const PoseMatching& options = {}) {
+  const MatchedPoses matched = matchPoses(file, keysOf(names), options);
+  std::string text = matched.how + "\n";
+  for (const std::string& warning : matched.warnings) text += warning + "\n";
+  for (const MatchedPoses::Missing& missing : matched.missing) text += missing.reason + "\n";
+  return text;
+}
+
+void expectIn(const std::string& piece, const std::string& text) {
+  EXPECT_NE(text.find(piece), std::string::npos) << piece << " in: " << text;
+}
+
+TEST(PoseMatching, LimitsTheGapToHalfOfTheIntervalOfTheScans) {
+  std::vector<std::string> tenth;  // every 0.1 s from 0 to 9.9 s, but not from 4.1 to 5.9 s
+  for (int i = 0; i < 100; ++i)
+    if (i <= 40 || i >= 60) tenth.push_back("170000000" + std::to_string(i / 10) + "." + std::to_string(i % 10));
+  const std::vector<std::string> rare = {"1700000000.0.pcd", "1700000004.9.pcd", "1700000010.2.pcd"};
+  EXPECT_EQ(linesFor(fileOf(tenth), rare, PoseMatch::Time), (Lines{1, 41, 81}));  // at most 2.65 s apart
+  expectIn("1700000010.2.pcd is outside the times of the poses, by 300 ms", remarksOf(fileOf(tenth), rare));
+  const std::vector<std::string> often = {"1700000004.0.pcd", "1700000004.5.pcd", "1700000005.0.pcd",
+                                          "1700000005.5.pcd", "1700000010.0.pcd", "1700000010.5.pcd"};
+  EXPECT_EQ(linesFor(fileOf(tenth), often, PoseMatch::Time), (Lines{41, 0, 0, 0, 81, 0}));  // at most 0.25 s apart
+  PoseMatching options;
+  options.interpolate = true;
+  expectIn("1700000004.9.pcd is interpolated between poses 2 s apart", remarksOf(fileOf(tenth), rare, options));
+}
+
+TEST(PoseMatching, TakesRarePosesOnlyWithInterpolation) {
+  const PoseFile file = fileOf({"1700000000.0", "1700000001.0", "1700000002.0", "1700000003.0"});
+  const std::vector<std::string> names = {"1700000001.0.pcd", "1700000001.1.pcd", "1700000001.2.pcd",
+                                          "1700000001.3.pcd", "1700000001.4.pcd", "1700000001.5.pcd",
+                                          "1700000003.1.pcd"};
+  EXPECT_EQ(linesFor(file, names, PoseMatch::Time), (Lines{2, 0, 0, 0, 0, 0, 0}));
+  expectIn("500 ms from the nearest pose, at most 50 ms; with --interpolate it has a pose", remarksOf(file, names));
+  PoseMatching options;
+  options.interpolate = true;
+  const Lines lines = linesFor(file, names, PoseMatch::Time, options), expected = {2, 2.1, 2.2, 2.3, 2.4, 2.5, 0};
+  for (std::size_t i = 0; i < lines.size(); ++i) EXPECT_NEAR(lines[i], expected[i], 1e-9);
+}
+
+TEST(PoseMatching, WarnsIfItInterpolatesOverAMissingPose) {
+  const PoseFile file = fileOf({"1700000000.0", "1700000001.0", "1700000002.0", "1700000004.0", "1700000005.0"});
+  PoseMatching options;
+  options.interpolate = true;
+  expectIn("1700000003.0.pcd is interpolated between poses 2 s apart, because a pose is missing there",
+           remarksOf(file, {"1700000001.0.pcd", "1700000002.0.pcd", "1700000003.0.pcd"}, options));
+  EXPECT_TRUE(matchPoses(file, keysOf({"1700000000.5.pcd", "1700000001.5.pcd"}), options).warnings.empty());
+}
+
+TEST(PoseMatching, NeverTakesAPoseOfAnotherYear) {
+  const PoseFile file = fileOf({"1600000000.0", "1700000000.0"});
+  EXPECT_EQ(linesFor(file, {"1600000100.0.pcd", "1700000000.0.pcd"}, PoseMatch::Time), (Lines{0, 2}));
+  expectIn("100 s from the nearest pose, at most 10 s", remarksOf(file, {"1600000100.0.pcd", "1700000000.0.pcd"}));
+}
+
+TEST(PoseMatching, NamesTwoScansWithOneTimeOrOnePose) {
+  const PoseFile file = fileOf({"1700000000.0", "1700000001.0", "1700000002.0"});
+  expectIn("the scans front_1700000001.0.pcd and rear_1700000001.0.pcd have the same time, 1700000001 s",
+           remarksOf(file, {"front_1700000000.0.pcd", "front_1700000001.0.pcd", "rear_1700000001.0.pcd"}));
+  expectIn("the scans 1700000001.0.pcd and 1700000001.03.pcd get the same pose, that of line 2",
+           remarksOf(file, {"1700000000.0.pcd", "1700000001.0.pcd", "1700000001.03.pcd", "1700000002.0.pcd"}));
+  EXPECT_TRUE(matchPoses(file, keysOf({"1700000001.0.pcd", "1700000001.0.pcd", "1700000002.0.pcd"}))
+                  .warnings.empty());  // one scan, twice
+}
+
+TEST(PoseMatching, GivesEachScanItsOwnPoseIfItsTimeHasSomethingBehindIt) {
+  const PoseFile file = fileOf({"1700000000.0", "1700000000.5", "1700000001.0", "1700000001.5"});
+  EXPECT_EQ(linesFor(file,
+                     {"1700000000.000000_cloud.pcd", "1700000000.500000_cloud.pcd", "1700000001.000000_cloud.pcd",
+                      "1700000001.500000_cloud.pcd"},
+                     PoseMatch::Time),
+            (Lines{1, 2, 3, 4}));
+  const PoseFile start = fileOf({"0.1", "0.6", "1.1"});
+  EXPECT_EQ(linesFor(start, {"0_100000000.pcd", "0_600000000.pcd", "1_100000000.pcd"}, PoseMatch::Time),
+            (Lines{1, 2, 3}));
+  EXPECT_EQ(linesFor(file, {"20231114_221320.pcd", "20231114_221321.pcd"}, PoseMatch::Time), (Lines{1, 3}));
+  expectIn("dates in names are read as UTC", remarksOf(file, {"20231114_221320.pcd", "20231114_221321.pcd"}));
+  expectIn("dates in names are read as UTC", remarksOf(file, {"20231114_231320.pcd", "20231114_231321.pcd"}));
+}
+
+TEST(PoseMatching, SortsLinesByTheirKeysBeforeItTakesTheirOrder) {
+  EXPECT_EQ(linesFor(fileOf({"2.5", "0.5", "1.5"}), {"a.pcd", "b.pcd", "c.pcd"}, PoseMatch::Order), (Lines{2, 3, 1}));
+  EXPECT_EQ(linesFor(fileOf({"12", "4", "7"}), {"a.pcd", "b.pcd", "c.pcd"}, PoseMatch::Order), (Lines{2, 3, 1}));
+  const std::string remarks = remarksOf(fileOf({"2.5", "0.5", "1.5"}), {"a.pcd", "b.pcd", "c.pcd"});
+  expectIn("sorted by times and matched by order", remarks);
+  expectIn("not in the order of their times (line 2), so they are sorted before", remarks);
+  EXPECT_THROW(matchPoses(fileOf({"2.5", "0.5", "0.5"}), keysOf({"a.pcd", "b.pcd", "c.pcd"})), FileError);
+  EXPECT_EQ(linesFor(fileOf({"0.5", "0.5", "1.5"}), {"a.pcd", "b.pcd", "c.pcd"}, PoseMatch::Order), (Lines{1, 2, 3}));
+  PoseMatching order;
+  order.match = PoseMatch::Order;
+  EXPECT_EQ(linesFor(fileOf({"2.5", "0.5"}), {"a.pcd", "b.pcd"}, PoseMatch::Order, order), (Lines{1, 2}));
+  expectIn("but they are matched in the order of the file",
+           remarksOf(fileOf({"2.5", "0.5"}), {"a.pcd", "b.pcd"}, order));
+}
+
+TEST(PoseMatching, SortsVerticesByTheirIds) {
+  const TemporaryDirectory directory;
+  const PoseFile file = readPoseFile(directory.write(
+      "poses.g2o",
+      "VERTEX_SE3:QUAT 3 1 0 0 0 0 0 1\nVERTEX_SE3:QUAT 1 2 0 0 0 0 0 1\nVERTEX_SE3:QUAT 2 3 0 0 0 0 0 1\n"));
+  EXPECT_EQ(linesFor(file, {"0.pcd", "1.pcd", "2.pcd"}, PoseMatch::Order), (Lines{2, 3, 1}));
+}
+
+TEST(PoseMatching, TakesWholeDecimalsForNumbersOfScans) {
+  const PoseFile file = fileOf({"0.000000", "1.000000", "2.000000", "3.000000"});
+  EXPECT_EQ(linesFor(file, {"000001.pcd", "000003.pcd"}, PoseMatch::Index), (Lines{2, 4}));
+  EXPECT_EQ(linesFor(file, {"1.5.pcd", "2.5.pcd"}, PoseMatch::Time), (Lines{3, 4}));
+  EXPECT_EQ(linesFor(file, {"10.pcd", "20.pcd", "30.pcd", "40.pcd"}, PoseMatch::Order), (Lines{1, 2, 3, 4}));
+}
+
+TEST(PoseMatching, TellsWhichIndicesTheFileHas) {
+  const PoseFile file = fileOf({"1", "2", "3"});
+  expectIn("(the file has indices 1 to 3)", remarksOf(file, {"1.pcd", "2.pcd"}));
+  expectIn("no index 0; the indices of the file start at 1", remarksOf(file, {"0.pcd", "1.pcd"}));
+  const std::string remarks = remarksOf(file, {"2.pcd", "4.pcd"});
+  expectIn("no index 4\n", remarks);
+}
+
+TEST(PoseMatching, TellsWhyItCannotTakeTheNumberOfTheLine) {
+  try {
+    matchPoses(kittiFile(3), keysOf({"00000a.pcd", "scan.pcd"}));
+    FAIL();
+  } catch (const FileError& error) {
+    expectIn("have no number in common, for example '00000a.pcd' and 'scan.pcd'", error.what());
+  }
+}
+
 TEST(PoseMatching, GivesNoPoseForALineOfNaN) {
   const TemporaryDirectory directory;
   const PoseFile file =

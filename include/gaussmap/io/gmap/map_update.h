@@ -25,29 +25,29 @@ struct UpdateOptions {
   int threads = 0;                              ///< 0 = all cores
 };
 
-/// So many points of two different scans nearly never have the same exact sums in a cell, see MapUpdate.
+/// Two scans with at least this many points in a cell almost never have the same exact sums there, see MapUpdate.
 inline constexpr std::int64_t kDensePoints = 3;
 
 /// The result of updateMap().
 struct MapUpdate {
-  /// Number of cells of the whole map after the update, per scale, finest first.
-  std::vector<std::size_t> cells, gaussians;  ///< number of Gaussians of the whole map, per scale, finest first
-  std::size_t tiles_written = 0;              ///< number of changed tiles; the others keep their bytes
-  std::size_t tiles = 0;                      ///< number of tiles in the file
-  std::size_t cells_added_to = 0;             ///< finest cells with new points
-  /// Of these, the cells that held exactly the new points before: their exact sums are equal, or a whole multiple. Many
-  /// such cells mean that a scan is added again.
+  std::vector<std::size_t> cells;      ///< cells of the whole map after the update, per scale, finest first
+  std::vector<std::size_t> gaussians;  ///< the same for Gaussians
+  std::size_t tiles_written = 0;       ///< number of changed tiles; the others keep their bytes
+  std::size_t tiles = 0;               ///< number of tiles in the file
+  std::size_t cells_added_to = 0;      ///< finest cells with new points
+  /// Of these, the cells whose exact sums before the update were those of the new points, or a whole multiple. Many
+  /// such cells mean that a scan was added twice.
   std::size_t cells_repeated = 0;
   std::size_t dense_cells = 0;           ///< finest cells with at least kDensePoints new points each
-  std::size_t dense_cells_repeated = 0;  ///< of these, the cells that held exactly the new points before
+  std::size_t dense_cells_repeated = 0;  ///< of these, the cells with such sums
 };
 
 /// Adds points to a map file. It decodes only the tiles that hold a coarsest cell with new points or cells below it. It
 /// encodes only the tiles that change.
 ///
 /// The finest scale is bit-identical to that of a map built from all points. Coarse cells with new points below them
-/// are rebuilt; all other cells stay unchanged. The rebuilt cells share what the unchanged cells leave of the scale's
-/// budget. In a map built from all points, all cells share the whole budget, so its coarse scales can differ. They are
+/// are rebuilt; all other cells stay unchanged. The unchanged cells keep their part of the scale's budget, and the
+/// rebuilt cells share the rest. So the coarse scales can differ from those of a map built from all points. They are
 /// identical if the map has one Gaussian per cell and keeps this budget (1). Otherwise, load the updated map and call
 /// refine(): the result is identical to that of refine() for a map built from all points.
 ///

@@ -43,6 +43,7 @@ struct GAUSSMAP_API PcdHeader {
   std::size_t columns = 0;                    ///< numbers per line in DATA ascii
   std::size_t data_offset = 0;                ///< bytes before the data
   std::size_t data_line = 0;                  ///< number of the first line of data; the first line of the file is 1
+  double viewpoint_step = 0.0;  ///< step of the last digit of a rounded position in VIEWPOINT [m]; 0: not rounded
 
   /// Returns the first field of this name, or nullptr if there is none. Padding is not found.
   const PcdField* find(const std::string& name) const;
@@ -58,9 +59,9 @@ struct PcdColumn {
 /// and z can be floats or doubles at any place of a record.
 ///
 /// No file can make the reader crash, hang, or use more memory than a small multiple of the file's size; a gzip file
-/// can expand to 16 MiB and 100 times its size. Opening reads the header and checks it against the size of the file,
-/// but reads no points. Thousands of scans can therefore be open at the same time. The file must not be truncated while
-/// it is open: reading can then raise the signal SIGBUS or return zeros; see requireWhole().
+/// can expand to at most 16 MiB plus 100 times its size. Opening reads the header and checks it against the size of the
+/// file, but reads no points. Thousands of scans can therefore be open at the same time. The file must not be truncated
+/// while it is open: reading can then raise the signal SIGBUS or return zeros; see requireWhole().
 class GAUSSMAP_API PcdReader {
  public:
   /// Opens a file. Throws FileError if the file is not usable; the message gives the line of the header or the byte of

@@ -67,8 +67,8 @@ class GAUSSMAP_API FileScans : public Scans {
   std::optional<PcdReader> pcd(std::size_t index) const;
 
   /// From now on, keeps the points of each opened scan whose file must be parsed or decompressed, until the scan is
-  /// opened again. The kept points take at most `bytes`. A program can then look at some scans before it reads all of
-  /// them, at little cost. 0: keeps no further points.
+  /// opened again, at most `bytes` in all. A program can then look at some scans before it reads all of them, at little
+  /// cost. 0 = stop.
   void keepForNextOpen(std::size_t bytes);
 
   /// Returns warnings about the coordinates of the points that were read so far: floats that are too coarse for cells
@@ -104,7 +104,9 @@ struct Extrinsic {
 };
 
 /// Reads an extrinsic: a pose (x y z qx qy qz qw), a 3 x 4 or 4 x 4 matrix, the matrix T_BS of a sensor.yaml (EuRoC),
-/// or the line Tr of a calib.txt (KITTI). Throws FileError if the file has none of them.
+/// the line Tr of a calib.txt (KITTI), or the lines R and T of calib_velo_to_cam.txt or calib_imu_to_velo.txt (KITTI
+/// raw; the name decides between them, because the lidar is the sensor of both). Throws FileError if the file has none
+/// of them.
 GAUSSMAP_API Extrinsic readExtrinsic(const std::filesystem::path& file);
 
 /// Options of findScans().
@@ -127,8 +129,8 @@ struct FoundScans {
   std::vector<std::string> warnings;      ///< one or two sentences each, with file names and what to do
   std::string poses;                      ///< where the poses come from and how they were matched, one sentence
   std::vector<std::string> without_pose;  ///< the scans that were left out, with the reason
-  std::vector<Pose> poses_as_read;        ///< per scan: before its convention and the extrinsic were applied
-  Pose extrinsic;                         ///< that was applied: pose of the sensor in the frame of the poses
+  std::vector<Pose> poses_as_read;        ///< per scan: the pose as read, before convention and extrinsic
+  Pose extrinsic;                         ///< the extrinsic that was applied; the identity if none was
 };
 
 /// Lists the scans (see listScans()), assigns the poses, and checks them.

@@ -43,9 +43,10 @@ struct PoseFile {
   std::string layout;                         ///< for messages: "time x y z qx qy qz qw"
   std::vector<Entry> entries;                 ///< in the order of the file
   bool by_name = false;                       ///< true: the keys are names of scans
-  /// true: the indices may not be numbers of scans: they stand behind the pose (ids of RTAB-Map), are those of the
-  /// vertices of a pose graph, or are called times.
+  /// true: the indices may be other ids, not numbers of scans: ids behind the pose (RTAB-Map), ids of the vertices of
+  /// a pose graph, or whole numbers in a column named time.
   bool indices_may_be_ids = false;
+  std::vector<std::string> warnings;  ///< one or two sentences each; matchPoses() repeats them
 };
 
 /// Reads a pose file.
@@ -69,14 +70,16 @@ enum class PoseMatch {
   Name,       ///< the file names the scan
   Index,      ///< the number in the scan's name is the index, or the number of the line counted from 0
   Time,       ///< the nearest time
-  Order       ///< one line per scan
+  Order       ///< one line per scan, in the order of the file
 };
 
 /// Options of matchPoses().
 struct PoseMatching {
   PoseMatch match = PoseMatch::Automatic;
-  std::optional<double> max_time_gap;  ///< [s]; std::nullopt: half of the median interval between scans
-  bool interpolate = false;            ///< between the two nearest poses: linear and slerp; false: the nearest pose
+  /// [s]; std::nullopt: half of the median interval between scans (for one scan: between poses), at most 10 s; with
+  /// `interpolate` at least 1.2 times the median interval between poses
+  std::optional<double> max_time_gap;
+  bool interpolate = false;  ///< between the poses before and after: linear and slerp; false: the nearest pose
 };
 
 /// A scan to which a pose belongs.
@@ -102,8 +105,9 @@ struct MatchedPoses {
 /// Gives each scan its pose.
 ///
 /// Times in names are decimal numbers or integers in s, ms, us or ns, or pairs of seconds and nanoseconds. The unit
-/// follows from the magnitude, and is the same for all scans. Times are compared exactly. The order of the lines counts
-/// only if the file and the scans have no common keys. Throws FileError if the numbers of scans and poses then differ,
+/// follows from the magnitude, and is the same for all scans. Times are compared exactly. Dates are read as UTC. The
+/// order of the lines counts only if the file and the scans have no common keys; with PoseMatch::Automatic, lines with
+/// times or indices are sorted first. Throws FileError if the numbers of scans and poses then differ,
 /// or if two poses fit a scan equally well.
 GAUSSMAP_API MatchedPoses matchPoses(const PoseFile& file, const std::vector<ScanKey>& scans,
                                      const PoseMatching& options = {});

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "gaussmap/io/scans/file_scans.h"
+
+namespace gaussmap::detail {
+
+/// While it exists, the points of opened scans are kept for the next time that these scans are opened, up to 64 MiB,
+/// see FileScans::keepForNextOpen(). For a look at some scans before a command reads all of them.
+class KeepingPoints {
+ public:
+  explicit KeepingPoints(FileScans& scans) : scans_(scans) { scans_.keepForNextOpen(std::size_t{64} << 20); }
+  ~KeepingPoints() { scans_.keepForNextOpen(0); }
+  KeepingPoints(const KeepingPoints&) = delete;
+  KeepingPoints& operator=(const KeepingPoints&) = delete;
+
+ private:
+  FileScans& scans_;
+};
+
+}  // namespace gaussmap::detail
