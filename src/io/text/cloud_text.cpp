@@ -50,8 +50,8 @@ std::vector<ColumnSample> sampleColumns(const RowParser& parser, const OpenText&
     for (std::size_t i = 0; i < std::min(kRowsPerRun, block->rows - first) && parser.findRow(place); ++i) {
       TextPlace next = place;
       parser.parse(next, {}, 0);  // checks the number of columns
-      std::vector<std::string_view> words =
-          splitRow({place.at, static_cast<std::size_t>(next.at - place.at)}, text.head.separator);
+      std::string_view row(place.at, static_cast<std::size_t>(next.at - place.at));
+      std::vector<std::string_view> words = splitRow(takeLine(row), text.head.separator);
       words.resize(samples.size());  // the last column can be empty
       for (std::size_t column = 0; column < samples.size(); ++column) {
         double value = std::numeric_limits<double>::quiet_NaN();
