@@ -55,8 +55,13 @@ std::vector<ColumnSample> sampleColumns(const RowParser& parser, const OpenText&
       words.resize(samples.size());  // the last column can be empty
       for (std::size_t column = 0; column < samples.size(); ++column) {
         double value = std::numeric_limits<double>::quiet_NaN();
-        samples[column].numeric = parseCell(words[column], value) && samples[column].numeric;
-        samples[column].values.push_back(value);
+        ColumnSample& sample = samples[column];
+        if (!parseCell(words[column], value) && sample.numeric) {
+          sample.numeric = false;
+          sample.text = words[column];
+          sample.text_line = place.line;
+        }
+        sample.values.push_back(value);
       }
       place = next;
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 // Samples of the columns of a file, from which the meaning of columns without names is found.
@@ -11,6 +12,8 @@ namespace gaussmap::detail {
 struct ColumnSample {
   std::vector<double> values;  ///< NaN if the column is no number
   bool numeric = true;         ///< false: a row has a text in this column
+  std::string text = {};       ///< the first text
+  std::size_t text_line = 0;   ///< its line
 };
 
 /// Returns true if all numbers of a sample are whole and lie in [low, high]. NaN is not whole.

@@ -102,6 +102,14 @@ void warnOfWildCoordinates(OpenRecords& records, const std::vector<ColumnSample>
     }
 }
 
+/// Warns if the records look like those of a dataset, but the given fields have another size.
+void warnOfLikelierRecord(OpenRecords& records) {
+  const std::string likely = likelyRecord(records.file->bytes());
+  if (likely.empty() || RecordLayout(parseFields(likely, true)).size == records.record.size) return;
+  records.layout.warnings.push_back("the content looks like --fields \"" + likely + "\", not like " +
+                                    describe(records.record));
+}
+
 }  // namespace
 
 std::unique_ptr<ScanFile> openFloatRecords(const std::filesystem::path& path, const FloatRecordsOptions& options) {
@@ -123,6 +131,7 @@ std::unique_ptr<ScanFile> openFloatRecords(const std::filesystem::path& path, co
   auto records =
       std::make_shared<OpenRecords>(OpenRecords{path, std::move(file), std::move(record), std::move(layout), guessed});
   warnOfWildCoordinates(*records, samples);
+  if (!guessed) warnOfLikelierRecord(*records);
   return std::make_unique<FloatRecords>(std::move(records));
 }
 

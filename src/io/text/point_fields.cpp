@@ -229,12 +229,19 @@ std::vector<PointField> parseFields(std::string_view text, bool with_types) {
   std::replace(words.begin(), words.end(), '\n', ' ');
   std::vector<PointField> fields;
   std::set<std::string> seen;
-  for (const std::string_view item : splitWords(words)) {
+  const std::vector<std::string_view> items = splitWords(words);
+  for (const std::string_view item : items) {
     fields.push_back(parseField(item, with_types));
     const std::string& name = fields.back().name;
     if (!name.empty() && !seen.insert(name).second) failInList(item, "occurs twice");
     if (fields.size() > kMostFields) throw std::invalid_argument("fields: more than 1000 fields");
   }
+  // A single r or b is not a colour. It can be a range or anything.
+  const bool has_colours = std::all_of(std::begin(kColourChannels), std::end(kColourChannels),
+                                       [&](const char* channel) { return seen.count(channel) > 0; });
+  for (std::size_t i = 0; !has_colours && i < fields.size(); ++i)
+    if (std::find(std::begin(kColourChannels), std::end(kColourChannels), fields[i].name) != std::end(kColourChannels))
+      fields[i].name = items[i].substr(0, items[i].find(':'));
   for (const char* const name : {"x", "y", "z"})
     if (seen.count(name) == 0)
       throw std::invalid_argument("fields: no " + quote(name) + ": a scan needs x, y and z, as in \"x y z intensity\"");

@@ -28,11 +28,10 @@ void widenRecords(const char* place, std::size_t step, std::size_t count, double
 
 /// The fields of the records of a dataset, all of them f32.
 struct KnownRecord {
-  const char* kind;
   const char* fields;
 };
-constexpr KnownRecord kKitti = {"KITTI", "x y z intensity"};
-constexpr KnownRecord kNuScenes = {"nuScenes", "x y z intensity ring"};
+constexpr KnownRecord kKitti = {"x y z intensity"};
+constexpr KnownRecord kNuScenes = {"x y z intensity ring"};
 
 /// Returns why the bytes are not such records, or an empty text.
 std::string misfit(const KnownRecord& known, std::string_view bytes) {
@@ -47,7 +46,6 @@ std::string misfit(const KnownRecord& known, std::string_view bytes) {
   // Nearly all floats whose bytes are not floats are very large, very small, or not finite.
   constexpr double kLargest = 1e4;
   constexpr double kSmallest = 1e-20;
-  bool is_fraction = true;
   bool all_zero = true;
   for (std::size_t i = 0; i < samples[0].values.size(); ++i) {
     for (std::size_t field = 0; field < samples.size(); ++field) {
@@ -57,13 +55,11 @@ std::string misfit(const KnownRecord& known, std::string_view bytes) {
       all_zero = all_zero && value == 0.0;
     }
     const double intensity = samples[3].values[i];
-    is_fraction = is_fraction && intensity <= 1.0;
     if (intensity < 0.0 || intensity > 255.0) return complain(3, intensity);
     if (samples.size() < 5) continue;
     const double ring = samples[4].values[i];
     if (ring < 0.0 || ring > 127.0 || ring != std::floor(ring)) return complain(4, ring);
   }
-  (void)is_fraction;
   return all_zero ? "all numbers would be 0" : "";
 }
 
@@ -175,6 +171,13 @@ std::vector<PointField> guessRecord(const std::filesystem::path& path, std::stri
                     "can hold 4 floats per point (KITTI) or 5 (nuScenes): choose with --fields \"x y z intensity\" or "
                     "--fields \"x y z intensity ring\"");
   return parseFields(nuscenes.empty() ? kNuScenes.fields : kKitti.fields, true);
+}
+
+std::string likelyRecord(std::string_view bytes) {
+  const bool kitti = misfit(kKitti, bytes).empty();
+  const bool nuscenes = misfit(kNuScenes, bytes).empty();
+  if (kitti == nuscenes) return "";
+  return kitti ? kKitti.fields : kNuScenes.fields;
 }
 
 void refuseOtherKinds(const std::filesystem::path& path, std::string_view bytes) {

@@ -35,6 +35,9 @@ std::vector<ColumnSample> sampleRecords(const RecordLayout& layout, std::string_
 /// both fit; the message names the option.
 std::vector<PointField> guessRecord(const std::filesystem::path& path, std::string_view bytes);
 
+/// Returns the fields that guessRecord() finds by the content alone; empty if neither or both kinds fit.
+std::string likelyRecord(std::string_view bytes);
+
 /// Throws FileError if the first bytes are those of a text or of another kind of file.
 void refuseOtherKinds(const std::filesystem::path& path, std::string_view bytes);
 

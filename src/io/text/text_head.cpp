@@ -88,9 +88,10 @@ class HeadReader {
     }
     if (const std::string_view word = decimalComma(words, separator); !word.empty())
       rows_.fail(place_.line, quote(word) + " has a decimal comma: write decimals with a point (1.5, not 1,5)");
-    if (!head_.names.empty() && words.size() > 1) return startRows(line, separator, words);
-    rows_.fail(place_.line, notANumber(*text) + ", and the line does not name columns x, y and z" +
-                                (fields_.empty() ? "; name the columns with --fields \"x y z intensity\"" : ""));
+    if (head_.names.empty() || words.size() < 2)
+      rows_.fail(place_.line, notANumber(*text) + ", and the line does not name columns x, y and z" +
+                                  (fields_.empty() ? "; name the columns with --fields \"x y z intensity\"" : ""));
+    return startRows(line, separator, words);
   }
 
   bool takeCount(std::string_view word) {

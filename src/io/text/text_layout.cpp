@@ -151,7 +151,9 @@ void dropTexts(const std::filesystem::path& path, const TextHead& head, const st
     std::string& name = fields[i].name;
     if (samples[i].numeric || name.empty()) continue;
     if (name == "x" || name == "y" || name == "z")
-      throw FileError(path, columnName(head, i) + " holds texts, so it cannot be " + name + "; " + kUseFields);
+      throw FileError(path, "line " + std::to_string(samples[i].text_line) + ": " + notANumber(samples[i].text) +
+                                ", but " + columnName(head, i) + " must be " + name + "; correct the line, or " +
+                                kUseFields);
     dropped += (dropped.empty() ? "" : ", ") + columnName(head, i);
     name.clear();
   }

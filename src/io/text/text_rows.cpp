@@ -72,9 +72,9 @@ std::vector<std::string_view> splitRow(std::string_view row, char separator) {
     if (at == end || startsComment(at, end)) return words;
     const char* const first = at;
     if (*at == '"') at = endOfQuoted(at, end);
-    while (at != end && !isSeparator(*at)) ++at;
+    while (at != end && !isSeparator(*at) && !(isBlank(at[0]) && startsComment(at + 1, end))) ++at;
     words.push_back(withoutQuotes({first, static_cast<std::size_t>(at - first)}));
-    if (at != end && separator != ' ') ++at;
+    if (at != end && separator != ' ' && *at == separator) ++at;
   }
 }
 
