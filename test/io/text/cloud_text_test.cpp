@@ -83,7 +83,7 @@ TEST_F(CloudTexts, ReadFromAnyPointOn) {
   const std::unique_ptr<ScanReader> reader = open(text)->open(0);
   ASSERT_EQ(reader->size(), 2000u);
   PointBlock<3> block;
-  for (const std::size_t first : {0, 1, 511, 512, 513, 1000, 1999, 1488}) {
+  for (const std::size_t first : std::vector<std::size_t>{0, 1, 511, 512, 513, 1000, 1999, 1488}) {
     reader->read(first, block);
     ASSERT_EQ(block.size, std::min<std::size_t>(512, 2000 - first));
     for (std::size_t i = 0; i < block.size; ++i) EXPECT_EQ(block.coordinate[0][i], static_cast<double>(first + i));
