@@ -95,7 +95,7 @@ bool parseCell(std::string_view word, double& value) {
 }
 
 std::string notANumber(std::string_view word) {
-  const std::string what = quote(word) + " is not a number";
+  std::string what = quote(word) + " is not a number";
   const std::size_t comma = word.find(',');
   double ignored = 0.0;
   if (comma != std::string_view::npos && detail::parseNumber(word.substr(0, comma), ignored))
