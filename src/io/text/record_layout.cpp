@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/text/record_layout.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <utility>
+
+#include "gaussmap/core/error.h"
+
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "records are read as they are in memory");
+
+namespace gaussmap::detail {
+namespace {
+
+constexpr std::string_view kTypeNames[] = {"f32", "f64", "u8", "u16", "u32", "i8", "i16", "i32"};
+
+template <typename Value>
+void widenRecords(const char* place, std::size_t step, std::size_t count, double* values) {
+  Value value;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::memcpy(&value, place + i * step, sizeof value);
+    values[i] = static_cast<double>(value);
+  }
+}
+
+/// The fields of the records of a dataset, all of them f32.
+struct KnownRecord {
+  const char* fields;
+};
+constexpr KnownRecord kKitti = {"x y z intensity"};
+constexpr KnownRecord kNuScenes = {"x y z intensity ring"};
+
+/// Returns why the bytes are not such records, or an empty text.
+std::string misfit(const KnownRecord& known, std::string_view bytes) {
+  const RecordLayout layout(parseFields(known.fields, true));
+  if (bytes.size() % layout.size != 0) return "the size is not a multiple of " + std::to_string(layout.size) + " bytes";
+  const std::vector<ColumnSample> samples = sampleRecords(layout, bytes);
+  const auto complain = [&](std::size_t field, double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g", value);
+    return layout.fields[field].name + " would be " + text;
+  };
+  // Nearly all floats whose bytes are not floats are very large, very small, or not finite.
+  constexpr double kLargest = 1e4;
+  constexpr double kSmallest = 1e-20;
+  bool all_zero = true;
+  for (std::size_t i = 0; i < samples[0].values.size(); ++i) {
+    for (std::size_t field = 0; field < samples.size(); ++field) {
+      const double value = samples[field].values[i];
+      const double size = std::abs(value);
+      if (!(size < kLargest) || (size < kSmallest && size > 0.0)) return complain(field, value);
+      all_zero = all_zero && value == 0.0;
+    }
+    const double intensity = samples[3].values[i];
+    if (intensity < 0.0 || intensity > 255.0) return complain(3, intensity);
+    if (samples.size() < 5) continue;
+    const double ring = samples[4].values[i];
+    if (ring < 0.0 || ring > 127.0 || ring != std::floor(ring)) return complain(4, ring);
+  }
+  return all_zero ? "all numbers would be 0" : "";
+}
+
+bool endsWith(std::string_view text, std::string_view end) {
+  return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
+}
+
+struct Magic {
+  std::string_view bytes;
+  const char* kind;
+};
+using namespace std::string_view_literals;
+constexpr Magic kMagics[] = {{"ply\n"sv, "a PLY file"},
+                             {"ply\r"sv, "a PLY file"},
+                             {"# .PCD"sv, "a PCD file"},
+                             {"VERSION "sv, "a PCD file"},
+                             {"FIELDS "sv, "a PCD file"},
+                             {"LASF"sv, "a LAS or LAZ file"},
+                             {"ASTM-E57"sv, "an E57 file"},
+                             {"\x89MCAP"sv, "an MCAP file"},
+                             {"#ROSBAG"sv, "a ROS bag"},
+                             {"SQLite format 3"sv, "an SQLite file"},
+                             {"\x1F\x8B"sv, "a gzip file, expand it with gunzip"},
+                             {"PK\x03\x04"sv, "a zip file, expand it with unzip"},
+                             {"\x28\xB5\x2F\xFD"sv, "a zstd file, expand it with unzstd"},
+                             {"\x93NUMPY"sv, "a file of numpy; save the array with tofile()"},
+                             {"\x89HDF"sv, "an HDF5 file"},
+                             {"\x89PNG"sv, "a PNG picture"},
+                             {"\x7F"
+                              "ELF"sv,
+                              "a program"},
+                             {"%PDF"sv, "a PDF document"}};
+
+}  // namespace
+
+RecordLayout::RecordLayout(std::vector<PointField> record_fields) : fields(std::move(record_fields)) {
+  for (const PointField& field : fields) {
+    offsets.push_back(size);
+    size += sizeOf(field.type);
+  }
+}
+
+std::string describe(const RecordLayout& layout) {
+  std::string text;
+  for (const PointField& field : layout.fields) {
+    text += text.empty() ? "" : " ";
+    text += field.name.empty() ? "-" : field.name;
+    text += ":";
+    text += kTypeNames[static_cast<std::size_t>(field.type)];
+  }
+  return text;
+}
+
+void readField(const RecordLayout& layout, std::size_t field, std::string_view bytes, std::size_t first,
+               std::size_t count, double* values) {
+  const char* const place = bytes.data() + first * layout.size + layout.offsets[field];
+  const ScalarType type = layout.fields[field].type;
+  // A colour of PCL in a float: the bits are the number.
+  if (layout.fields[field].name == "rgb" && type == ScalarType::F32)
+    return widenRecords<std::uint32_t>(place, layout.size, count, values);
+  switch (type) {
+    case ScalarType::F32:
+      return widenRecords<float>(place, layout.size, count, values);
+    case ScalarType::F64:
+      return widenRecords<double>(place, layout.size, count, values);
+    case ScalarType::U8:
+      return widenRecords<std::uint8_t>(place, layout.size, count, values);
+    case ScalarType::U16:
+      return widenRecords<std::uint16_t>(place, layout.size, count, values);
+    case ScalarType::U32:
+      return widenRecords<std::uint32_t>(place, layout.size, count, values);
+    case ScalarType::I8:
+      return widenRecords<std::int8_t>(place, layout.size, count, values);
+    case ScalarType::I16:
+      return widenRecords<std::int16_t>(place, layout.size, count, values);
+    case ScalarType::I32:
+      return widenRecords<std::int32_t>(place, layout.size, count, values);
+  }
+}
+
+std::vector<ColumnSample> sampleRecords(const RecordLayout& layout, std::string_view bytes) {
+  constexpr std::size_t kRuns = 64;
+  constexpr std::size_t kRecordsPerRun = 64;
+  const std::size_t records = bytes.size() / layout.size;
+  std::vector<ColumnSample> samples(layout.fields.size());
+  const bool all = records <= kRuns * kRecordsPerRun;
+  const std::size_t per_run = all ? records : kRecordsPerRun;
+  for (std::size_t field = 0; field < samples.size(); ++field) {
+    samples[field].values.resize(all ? records : kRuns * kRecordsPerRun);
+    for (std::size_t run = 0; run < (all ? 1 : kRuns); ++run)
+      readField(layout, field, bytes, (records - per_run) / (kRuns - 1) * run, per_run,
+                samples[field].values.data() + run * per_run);
+  }
+  return samples;
+}
+
+std::vector<PointField> guessRecord(const std::filesystem::path& path, std::string_view bytes) {
+  const std::string kitti = misfit(kKitti, bytes);
+  const std::string nuscenes = misfit(kNuScenes, bytes);
+  if (!kitti.empty() && !nuscenes.empty())
+    throw FileError(path, "no kind of file is known by its first bytes, and " + std::to_string(bytes.size()) +
+                              " bytes of raw floats do not fit either: as 4 floats per point, " + kitti +
+                              "; as 5 floats, " + nuscenes +
+                              "; if these are raw records, name the fields, for example with --fields \"x y z "
+                              "intensity\" or --fields \"x y z intensity ring:u16 time:f64\"");
+  const bool both = kitti.empty() && nuscenes.empty();
+  if (both && !endsWith(path.filename().string(), ".pcd.bin"))
+    throw FileError(path,
+                    "can hold 4 floats per point (KITTI) or 5 (nuScenes): choose with --fields \"x y z intensity\" or "
+                    "--fields \"x y z intensity ring\"");
+  return parseFields(nuscenes.empty() ? kNuScenes.fields : kKitti.fields, true);
+}
+
+std::string likelyRecord(std::string_view bytes) {
+  const bool kitti = misfit(kKitti, bytes).empty();
+  const bool nuscenes = misfit(kNuScenes, bytes).empty();
+  if (kitti == nuscenes) return "";
+  return kitti ? kKitti.fields : kNuScenes.fields;
+}
+
+void refuseOtherKinds(const std::filesystem::path& path, std::string_view bytes) {
+  constexpr std::size_t kLooked = 4096;
+  constexpr std::size_t kEnough = 12;  // the bytes of fewer floats can be letters by chance
+  for (const Magic& magic : kMagics)
+    if (bytes.substr(0, magic.bytes.size()) == magic.bytes)
+      throw FileError(path, std::string("is ") + magic.kind + ", not raw records of floats");
+  const std::string_view start = bytes.substr(0, kLooked);
+  const bool is_text = start.size() >= kEnough && std::all_of(start.begin(), start.end(), [](char c) {
+                         return (c >= ' ' && c <= '~') || c == '\t' || c == '\r' || c == '\n';
+                       });
+  if (is_text) throw FileError(path, "is a text, not raw records of floats");
+}
+
+}  // namespace gaussmap::detail

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Raw records of floats: the fields are guessed, given by the first line of the input, or fixed.
+#include <algorithm>
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+
+#include "fuzz_file.h"
+#include "io/text/float_records.h"
+
+namespace {
+
+void readRecords(const std::filesystem::path& path, const std::string& fields) {
+  using namespace gaussmap;
+  fuzz::refusesOrReads([&] {
+    const auto file = detail::openFloatRecords(path, {fields});
+    file->kind();
+    file->warnings();
+    const auto reader = file->open(0);
+    PointBlock<3> block;
+    std::size_t count = 0;
+    for (std::size_t first = 0; first < reader->size(); first += block.size) {
+      reader->read(first, block);
+      count += block.size;
+      if (block.size == 0) std::abort();
+    }
+    if (count != file->info(0).points) std::abort();
+    for (const std::string& name : reader->valueNames())
+      fuzz::refusesOrReads([&] {
+        if (reader->values(name).size() != reader->size()) std::abort();
+      });
+  });
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace gaussmap;
+  const auto path = fuzz::asFile("scan.bin", data, size);
+  readRecords(path, "");
+  readRecords(path, "x y:f64 z:i16:cm ring:u8 -:u32 time:u32:us rgb r:i8 g:u16 b:i32");
+  // The first line of the input is a list of fields.
+  const std::uint8_t* const line_end = std::find(data, data + size, static_cast<std::uint8_t>('\n'));
+  if (line_end == data + size) return 0;
+  const std::string fields(reinterpret_cast<const char*>(data), static_cast<std::size_t>(line_end - data));
+  const auto length = static_cast<std::size_t>(data + size - line_end - 1);
+  try {
+    readRecords(fuzz::asFile("scan.bin", line_end + 1, length), fields);
+  } catch (const std::invalid_argument&) {
+    // wrong fields
+  }
+  return 0;
+}
