@@ -62,8 +62,9 @@ class LayeredDecoder : public LazChunkDecoder {
       for (const Part& part : parts_) part.item->decode(&layers_[part.first_layer], channel, records + part.offset);
     }
     if (points == 0) return "";
-    const bool failed = std::any_of(layers_.begin(), layers_.end(), [](const LazLayer& layer) { return layer.failed(); }) ||
-                        std::any_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.item->failed(); });
+    const bool failed =
+        std::any_of(layers_.begin(), layers_.end(), [](const LazLayer& layer) { return layer.failed(); }) ||
+        std::any_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.item->failed(); });
     return failed ? "ends too early or is damaged" : "";
   }
 

@@ -79,8 +79,7 @@ class Channel {
     intensities_.fill(before.intensity);
     times_.start(before.time);
     for (IntegerDecoder* const integers : {&dx_, &dy_, &z_, &intensity_, &scan_angle_, &source_}) integers->reset();
-    for (std::vector<SymbolModel>* const all :
-         {&changes_, &returns_, &return_, &classification_, &flags_, &user_data_})
+    for (std::vector<SymbolModel>* const all : {&changes_, &returns_, &return_, &classification_, &flags_, &user_data_})
       for (SymbolModel& model : *all) model.reset();
     channel_.reset();
     same_pulse_.reset();

@@ -5,8 +5,8 @@
 #include <array>
 #include <cstdint>
 
-// Contexts that LAZ derives from the number of a return and the number of returns of its pulse. They also give a context
-// to impossible pairs, for example return 3 of 2. All tables are symmetric.
+// Contexts that LAZ derives from the number of a return and the number of returns of its pulse. They also give a
+// context to impossible pairs, for example return 3 of 2. All tables are symmetric.
 namespace gaussmap::detail {
 
 template <std::size_t N>
