@@ -65,9 +65,10 @@ PlyMeaning meaningOf(const PlyElement& vertex, std::string& error) {
   std::vector<std::size_t> axes = index.findAll({"x", "y", "z"});
   if (axes.empty()) axes = index.findAll({"X", "Y", "Z"});
   if (axes.empty()) {
-    error = "the vertices have no x, y and z";
-    for (const char* const name : {"x", "y", "z"})
-      if (index.find(name) == kNone) error = "has no property " + quote(name) + ": a map needs x, y and z";
+    const auto isMissing = [&](const char* name) { return index.find(name) == kNone; };
+    constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
+    error =
+        "has no property " + quote(*std::find_if(kAxes.begin(), kAxes.end(), isMissing)) + ": a map needs x, y and z";
     return meaning;
   }
   std::copy(axes.begin(), axes.end(), meaning.axes.begin());
