@@ -42,6 +42,7 @@ std::vector<std::vector<double>> columnsOf(const PlyVertices& vertices, const st
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return properties[a] < properties[b]; });
   std::vector<std::size_t> sorted;
+  sorted.reserve(order.size());
   for (const std::size_t i : order) sorted.push_back(properties[i]);
   std::vector<std::vector<double>> columns = vertices.columns(sorted);
   std::vector<std::vector<double>> result(properties.size());

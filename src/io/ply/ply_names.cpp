@@ -27,7 +27,7 @@ std::string valueNameOf(std::string_view property) {
   constexpr std::string_view kScalar = "scalar_";
   if (property.size() > kScalar.size() && property.substr(0, kScalar.size()) == kScalar)
     property.remove_prefix(kScalar.size());
-  const std::string lower = lowerOf(property);
+  std::string lower = lowerOf(property);
   for (const char* const known : {"intensity", "ring", "label", "time", "classification"})
     if (lower == known) return lower;
   if (lower == "gpstime" || lower == "gps_time") return "time";
