@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "io/files/mapped_file.h"
+#include "io/las/las_box.h"
 #include "io/las/las_bytes.h"
 #include "io/las/las_points.h"
 
@@ -132,13 +133,22 @@ class LazFile : public ScanFile {
            std::to_string(header.point_format);
   }
   std::size_t size() const override { return 1; }
-  FileScanInfo info(std::size_t /*scan*/) const override { return {"", source_->header.points, std::nullopt, {}}; }
+  FileScanInfo info(std::size_t /*scan*/) const override { return {"", source_->header.points}; }
   std::unique_ptr<ScanReader> open(std::size_t /*scan*/) const override {
     return std::make_unique<LazReader>(source_, fields_);
   }
   bool inMapFrame() const override { return true; }
   std::string coordinateSystem() const override { return source_->header.crs.text; }
-  std::vector<std::string> warnings() const override { return warnings_; }
+  std::vector<std::string> warnings() const override {
+    std::vector<std::string> warnings = warnings_;
+    // Only the first point is not compressed.
+    const std::string_view first = source_->file->bytes().substr(source_->chunks.first_byte);
+    const std::size_t count =
+        first.size() < source_->header.record_length ? 0 : std::min<std::size_t>(source_->header.points, 1);
+    for (std::string& warning : lasBoxWarnings(source_->header, first.data(), count))
+      warnings.push_back(std::move(warning));
+    return warnings;
+  }
 
  private:
   std::shared_ptr<const LazSource> source_;
@@ -147,6 +157,12 @@ class LazFile : public ScanFile {
 };
 
 }  // namespace
+
+bool isLaz(std::string_view start) {
+  constexpr std::size_t kFormatByte = 104;
+  constexpr int kCompressionBits = 0xC0;
+  return hasLasSignature(start) && start.size() > kFormatByte && (start[kFormatByte] & kCompressionBits) != 0;
+}
 
 std::shared_ptr<const LazSource> openLazSource(const std::filesystem::path& path) {
   auto source = std::make_shared<LazSource>();

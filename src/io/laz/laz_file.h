@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <string_view>
 
 #include "io/formats/scan_file.h"
 #include "io/las/las_header.h"
@@ -13,6 +14,9 @@
 namespace gaussmap::detail {
 
 class MappedFile;
+
+/// Returns true if a file starts like a LAZ or COPC file. 105 bytes are enough to tell it from a LAS file.
+bool isLaz(std::string_view start);
 
 /// Opens a LAZ or COPC file: one scan in the map frame. Reads the header and the table of chunks.
 ///
