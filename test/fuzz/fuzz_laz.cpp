@@ -18,9 +18,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       if (block.size == 0) std::abort();
     }
     if (count != reader->size() || count != file->info(0).points) std::abort();
-    std::size_t values = 0;  // extra bytes can have hundreds of names
+    std::size_t values = 0;  // extra bytes can have hundreds of names, and each one decodes the file again
     for (const std::string& name : reader->valueNames())
-      if (++values < 20 && reader->values(name).size() != count) std::abort();
+      if (++values < 20 && count < 100000 && reader->values(name).size() != count) std::abort();
   });
   fuzz::refusesOrReads([&] {
     const auto source = detail::openLazSource(path);

@@ -48,6 +48,8 @@ void SymbolModel::update() {
   }
 
   std::uint16_t* const cumulative = this->cumulative();
+  // Every count is at least 1.
+  // cppcheck-suppress zerodiv
   const std::uint32_t scale = 0x80000000u / total_;
   std::uint32_t sum = 0;
   for (unsigned s = 0; s < symbols_; ++s) {

@@ -45,7 +45,7 @@ enum LazLayers : unsigned {
   kAllLazLayers = ~0u
 };
 
-/// Decodes the chunks of a LAZ file, one after the other. Each chunk starts anew.
+/// Decodes the chunks of a LAZ file, one after the other. No statistics are kept from one chunk to the next.
 ///
 /// The functions return what is wrong with the data, as in "ends too early", or an empty string.
 class LazChunkDecoder {

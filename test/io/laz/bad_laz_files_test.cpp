@@ -77,7 +77,7 @@ TEST_F(BadLazFiles, WrongNumbersOfPointsAreRefused) {
   expectChangeRefused(107, std::uint32_t{140}, {"chunk 2", "its points end after"});
   expectChangeRefused(107, std::uint32_t{4000000000}, {"4000000000 points", "but the file has only"});
   const std::string variable = test::lazSample("laszip_format7_channels_variable");
-  for (const std::uint64_t count : {149, 151}) {
+  for (const std::uint64_t count : {149u, 151u}) {
     std::string bytes = test::changedAt(variable, 247, count);
     bytes = test::changedAt(bytes, 107, static_cast<std::uint32_t>(count));
     expectRefused(bytes, {count == 149 ? "chunk 3 has 2 points" : "150 points together, but the header says 151"});
