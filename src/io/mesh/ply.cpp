@@ -8,7 +8,7 @@
 #include "gaussmap/io/mesh/ply.h"
 #include "io/files/mapped_file.h"
 #include "io/files/text.h"
-#include "io/mesh/ply_header.h"
+#include "io/ply/ply_header.h"
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "only the values of big-endian files are byte-swapped");
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "io/mesh/ply_header.h"
+#include "io/ply/ply_header.h"
 
 #include <algorithm>
 #include <array>
-#include <optional>
+#include <set>
 #include <utility>
 
 #include "gaussmap/core/error.h"
@@ -90,8 +90,8 @@ class HeaderParser {
     PlyElement element;
     element.name = words[1];
     element.line = line_;
-    for (const PlyElement& other : header_.elements)
-      if (other.name == element.name) fail("a second element " + quote(element.name));
+    if (!elements_.insert(element.name).second) fail("a second element " + quote(element.name));
+    properties_.clear();
     const auto [end, error] = std::from_chars(words[2].data(), words[2].data() + words[2].size(), element.count);
     if (error != std::errc() || end != words[2].data() + words[2].size())
       fail("the number of " + quote(element.name) + " is " + quote(words[2]) + ", not a whole number" +
@@ -112,8 +112,7 @@ class HeaderParser {
     }
     property.type = type(words[words.size() - 2]);
     property.name = words.back();
-    for (const PlyProperty& other : header_.elements.back().properties)
-      if (other.name == property.name) fail("the property " + quote(property.name) + " occurs twice");
+    if (!properties_.insert(property.name).second) fail("the property " + quote(property.name) + " occurs twice");
     header_.elements.back().properties.push_back(std::move(property));
   }
 
@@ -127,6 +126,8 @@ class HeaderParser {
   std::string_view bytes_;
   std::size_t line_ = 0;
   bool has_format_ = false;
+  std::set<std::string> elements_;    // names so far
+  std::set<std::string> properties_;  // names of the current element so far
   PlyHeader header_;
 };
 
