@@ -42,6 +42,12 @@ void requireSpace(const E57Pages& pages, const E57Scan& scan, std::size_t number
                                       " bytes, but the section of the points has " + std::to_string(there));
 }
 
+/// Returns the number of bytes that cannot be padding any more. Writers fill up the last word of a field of integers,
+/// which has up to 8 bytes.
+std::uint64_t paddingLimit(const E57Field& field) {
+  return field.encoding == E57Encoding::Single ? sizeof(float) : 8u;
+}
+
 E57Section findSection(const E57Pages& pages, const E57Scan& scan, std::size_t number) {
   const auto fail = [&](const std::string& what) { throw FileError(pages.path(), e57Place(number) + what); };
   const std::string what = e57Place(number) + "the section of the points";
@@ -161,10 +167,9 @@ class E57PacketReader {
     const std::uint64_t used = bytes < missing ? bytes : missing;
     if (field.to != nullptr && used > 0) pages_.copy(from, static_cast<std::size_t>(used), field.to + field.found);
     field.found += bytes;
-    // Writers fill up the last word of a field. It has up to 8 bytes.
-    constexpr std::uint64_t kWord = 8;
-    if (scan_.fields[index].encoding != E57Encoding::String && field.found >= field.needed + kWord)
-      failAt(packet, "holds more of the field " + scan_.fields[index].name +
+    const E57Field& described = scan_.fields[index];
+    if (described.encoding != E57Encoding::String && field.found >= field.needed + paddingLimit(described))
+      failAt(packet, "holds more of the field " + described.name +
                          " than recordCount = " + std::to_string(scan_.points) +
                          " allows: the XML section and the packets contradict each other");
   }

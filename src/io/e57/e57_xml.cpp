@@ -130,14 +130,18 @@ class E57XmlReader {
     const pugi::xml_node rotation = node.child("rotation"), translation = node.child("translation");
     if (!rotation && !translation) return std::nullopt;
     Pose pose;
-    if (rotation)
-      pose.rotation =
-          Pose::Rotation(childValue(rotation, "w", "pose/rotation"), childValue(rotation, "x", "pose/rotation"),
-                         childValue(rotation, "y", "pose/rotation"), childValue(rotation, "z", "pose/rotation"));
-    if (translation)
-      pose.translation = {childValue(translation, "x", "pose/translation"),
-                          childValue(translation, "y", "pose/translation"),
-                          childValue(translation, "z", "pose/translation")};
+    if (rotation) {
+      const std::string what = "pose/rotation";
+      const double w = childValue(rotation, "w", what), x = childValue(rotation, "x", what);
+      const double y = childValue(rotation, "y", what), z = childValue(rotation, "z", what);
+      pose.rotation = Pose::Rotation(w, x, y, z);
+    }
+    if (translation) {
+      const std::string what = "pose/translation";
+      pose.translation[0] = childValue(translation, "x", what);
+      pose.translation[1] = childValue(translation, "y", what);
+      pose.translation[2] = childValue(translation, "z", what);
+    }
     return pose;
   }
 
