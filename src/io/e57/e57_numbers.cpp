@@ -15,6 +15,7 @@ T loadAt(const char* place) {
 }
 
 /// Reads unsigned integers of `bits` bits, which follow each other without gaps, the lowest bit first.
+/// `bits` must be 1 to 64.
 template <typename Use>
 void forEachInteger(const char* bytes, unsigned bits, std::size_t first, std::size_t count, const Use& use) {
   const std::uint64_t mask = ~std::uint64_t{0} >> (64 - bits);
@@ -33,7 +34,8 @@ void forEachInteger(const char* bytes, unsigned bits, std::size_t first, std::si
 }
 
 /// Writes integer * scale + offset. Returns false if an integer is greater than `range`.
-bool decodeIntegers(const E57Field& field, const char* bytes, std::size_t first, std::size_t count, double* values) {
+bool decodeIntegers(const E57Field& field, unsigned bits, const char* bytes, std::size_t first, std::size_t count,
+                    double* values) {
   const std::uint64_t range = field.range();
   const auto minimum = static_cast<std::uint64_t>(field.minimum);
   bool is_outside = false;
@@ -42,10 +44,9 @@ bool decodeIntegers(const E57Field& field, const char* bytes, std::size_t first,
     return static_cast<double>(static_cast<std::int64_t>(minimum + stored));
   };
   if (field.encoding == E57Encoding::Integer)
-    forEachInteger(bytes, field.bits(), first, count,
-                   [&](std::size_t i, std::uint64_t stored) { values[i] = number(stored); });
+    forEachInteger(bytes, bits, first, count, [&](std::size_t i, std::uint64_t stored) { values[i] = number(stored); });
   else
-    forEachInteger(bytes, field.bits(), first, count, [&](std::size_t i, std::uint64_t stored) {
+    forEachInteger(bytes, bits, first, count, [&](std::size_t i, std::uint64_t stored) {
       values[i] = number(stored) * field.scale + field.offset;
     });
   return !is_outside;
@@ -72,13 +73,14 @@ std::size_t decodeE57(const E57Field& field, const char* bytes, std::size_t firs
     default:
       break;
   }
-  if (field.bits() == 0) {
+  const unsigned bits = field.bits();
+  if (bits == 0) {
     for (std::size_t i = 0; i < count; ++i) values[i] = constantOf(field);
     return count;
   }
-  if (decodeIntegers(field, bytes, first, count, values)) return count;
+  if (decodeIntegers(field, bits, bytes, first, count, values)) return count;
   std::size_t good = count;
-  forEachInteger(bytes, field.bits(), first, count, [&](std::size_t i, std::uint64_t stored) {
+  forEachInteger(bytes, bits, first, count, [&](std::size_t i, std::uint64_t stored) {
     if (stored > field.range() && i < good) good = i;
   });
   return good;

@@ -32,7 +32,7 @@ void makeCartesian(PointBlock<3>& block) {
 std::uint32_t byteOf(double colour, const E57Limits& limits) {
   const double scaled = (colour - limits.minimum) / (limits.maximum - limits.minimum) * 255.0;
   if (!(scaled > 0.0)) return 0;
-  return static_cast<std::uint32_t>(std::min(scaled, 255.0) + 0.5);
+  return static_cast<std::uint32_t>(std::lround(std::min(scaled, 255.0)));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/e57/e57_section.h"
 
+#include <algorithm>
 #include <cstring>
 #include <string>
 
@@ -93,8 +94,8 @@ class E57PacketReader {
     for (std::size_t i = 0; i < fields_.size(); ++i)
       if (scan_.fields[i].encoding != E57Encoding::String && fields_[i].found < fields_[i].needed)
         fail("recordCount is " + std::to_string(scan_.points) + ", but the packets hold only " +
-             pointsOf(fields_[i].found * 8 / scan_.fields[i].bits()) + " of the field " + scan_.fields[i].name +
-             ": the file is damaged, or its writer did not finish");
+             pointsOf(fields_[i].found * 8 / std::max(scan_.fields[i].bits(), 1u)) + " of the field " +
+             scan_.fields[i].name + ": the file is damaged, or its writer did not finish");
     return std::move(streams_);
   }
 

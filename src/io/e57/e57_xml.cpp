@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <pugixml.hpp>
 #include <set>
@@ -56,10 +57,8 @@ class E57XmlReader {
     if (!root) throw FileError(path_, "the XML section has no element e57Root");
     E57Description description;
     description.coordinate_system = root.child("coordinateMetadata").text().get();
-    for (const pugi::xml_node image : root.child("images2D").children()) {
-      (void)image;
-      ++description.images;
-    }
+    const auto images = root.child("images2D").children();
+    description.images = static_cast<std::size_t>(std::distance(images.begin(), images.end()));
     for (const pugi::xml_node scan : root.child("data3D").children()) {
       scan_ = description.scans.size();
       description.scans.push_back(readScan(scan));
