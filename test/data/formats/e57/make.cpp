@@ -52,7 +52,7 @@ std::uint64_t hash(std::int64_t i) {
 class Writer {
  public:
   explicit Writer(const std::string& path) : file_(path, "w"), root_(file_.root()), scans_(file_, true) {
-    file_.extensionsAdd("", e57::E57_V1_0_URI);
+    file_.extensionsAdd("", e57::VERSION_1_0_URI);
     file_.extensionsAdd("nor", "http://www.libe57.org/E57_EXT_surface_normals.txt");
     root_.set("formatName", e57::StringNode(file_, "ASTM E57 3D Imaging Data File"));
     root_.set("guid", e57::StringNode(file_, "{00000000-0000-0000-0000-000000000000}"));

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
 # Makes the files of this folder again: make.sh LIBE57FORMAT WEB_E57
-#   LIBE57FORMAT  a clone of https://github.com/asmaloney/libE57Format, commit 21c2943 (version 3), built in its folder build
+#   LIBE57FORMAT  a clone of https://github.com/asmaloney/libE57Format, commit 21c2943 (version 3.4.0), built in its folder build
 #                 with cmake -DCMAKE_BUILD_TYPE=Release -DE57_BUILD_TEST=OFF -DE57_BUILD_SHARED=OFF (needs libxerces-c-dev)
 #   WEB_E57       a folder in which `npm install web-e57@1.2.0` has run (node 20)
 # NAME.e57  written by libE57Format
