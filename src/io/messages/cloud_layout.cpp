@@ -5,8 +5,6 @@
 #include <limits>
 #include <set>
 
-#include "io/files/text.h"
-
 namespace gaussmap::detail {
 namespace {
 
@@ -23,7 +21,7 @@ constexpr std::size_t kMostValues = 256;  // more are not listed, so that the li
 constexpr std::size_t kLongestName = 256;
 
 std::string fieldName(const CloudField& field) {
-  return "field " + quote(field.name);
+  return "field '" + shown(field.name) + "'";
 }
 
 void checkField(const CloudField& field, std::size_t point_step, const MessageOrigin& origin) {
@@ -45,7 +43,7 @@ CloudColumn axisOf(const CloudMessage& cloud, const char* name, const MessageOri
     found = &field;
   }
   if (!found)
-    origin.fail("the cloud has no field '" + std::string(name) + "', its fields are " + quote(names) +
+    origin.fail("the cloud has no field '" + std::string(name) + "', its fields are " + shown(names) +
                 ": a map needs x, y and z [m]");
   if (found->datatype != kFloat32 && found->datatype != kFloat64)
     origin.fail(fieldName(*found) + " is " + kTypeNames[found->datatype] +

@@ -8,7 +8,6 @@
 #include <string_view>
 #include <utility>
 
-#include "io/files/text.h"
 #include "io/messages/cloud_layout.h"
 
 namespace gaussmap::detail {
@@ -194,7 +193,7 @@ void checkChannels(const OldCloudMessage& cloud, const MessageOrigin& origin) {
   const std::size_t points = cloud.coordinates.size() / 3;
   for (const auto& [name, values] : cloud.channels)
     if (values.size() != points)
-      origin.fail("channel " + quote(name) + " has " + std::to_string(values.size()) + " values for " +
+      origin.fail("channel '" + shown(name) + "' has " + std::to_string(values.size()) + " values for " +
                   std::to_string(points) + " points");
 }
 

@@ -157,6 +157,10 @@ std::vector<StampedTransform> decodeTransforms(std::string_view message, Message
   return transforms;
 }
 
+bool isTransformType(const std::string& type) {
+  return type == "tf2_msgs/TFMessage" || type == "tf/tfMessage";
+}
+
 bool isPoseType(const std::string& type) {
   return isAmong(kPoseTypes, type);
 }
@@ -184,15 +188,15 @@ std::vector<StampedTransform> decodePoses(const std::string& type, std::string_v
   return poses;
 }
 
+bool hasHeader(const std::string& type) {
+  return isTransformType(type) || isPoseType(type) || isAmong(kTypesWithHeader, type);
+}
+
 std::optional<MessageHeader> headerOf(const std::string& type, std::string_view message, MessageEncoding encoding,
                                       const MessageOrigin& origin) {
-  if (type == "tf2_msgs/TFMessage" || type == "tf/tfMessage") {
-    WireReader reader(message, encoding, origin);
-    if (reader.structures("transforms", kLeastTransform) == 0) return std::nullopt;
-    return decodeHeader(reader);
-  }
-  if (!isPoseType(type) && !isAmong(kTypesWithHeader, type)) return std::nullopt;
+  if (!hasHeader(type)) return std::nullopt;
   WireReader reader(message, encoding, origin);
+  if (isTransformType(type) && reader.structures("transforms", kLeastTransform) == 0) return std::nullopt;
   return decodeHeader(reader);
 }
 

@@ -74,6 +74,9 @@ OldCloudMessage decodeOldCloud(std::string_view message, MessageEncoding encodin
 std::vector<StampedTransform> decodeTransforms(std::string_view message, MessageEncoding encoding,
                                                const MessageOrigin& origin);
 
+/// Returns true for the two types of tf: tf2_msgs/TFMessage and tf/tfMessage.
+bool isTransformType(const std::string& type);
+
 /// Returns true if decodePoses() reads this type: nav_msgs/Odometry, nav_msgs/Path, and geometry_msgs/PoseStamped,
 /// PoseWithCovarianceStamped and TransformStamped.
 bool isPoseType(const std::string& type);
@@ -81,6 +84,9 @@ bool isPoseType(const std::string& type);
 /// Returns the poses of a message: several of a nav_msgs/Path, else one.
 std::vector<StampedTransform> decodePoses(const std::string& type, std::string_view message, MessageEncoding encoding,
                                           const MessageOrigin& origin);
+
+/// Returns true if headerOf() reads this type.
+bool hasHeader(const std::string& type);
 
 /// Returns the header of a message whose type begins with one, or of the first transform of a TFMessage. Returns
 /// std::nullopt if the type is not known.

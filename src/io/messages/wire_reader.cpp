@@ -26,8 +26,22 @@ std::string stampText(std::chrono::nanoseconds time) {
   return text;
 }
 
+std::string shown(std::string_view name) {
+  constexpr std::size_t kLongest = 120;
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string text;
+  for (const char c : name.substr(0, kLongest)) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x20 && byte < 0x7F)
+      text += c;
+    else
+      text += {'\\', 'x', kDigits[byte / 16u], kDigits[byte % 16u]};
+  }
+  return text + (name.size() > kLongest ? "..." : "");
+}
+
 void MessageOrigin::fail(const std::string& what) const {
-  throw FileError(path, topic + ", message recorded at " + stampText(log_time) + ": " + what);
+  throw FileError(path, shown(topic) + ", message recorded at " + stampText(log_time) + ": " + what);
 }
 
 WireReader::WireReader(std::string_view message, MessageEncoding encoding, const MessageOrigin& origin)
