@@ -105,7 +105,8 @@ class MemoryMessages : public detail::MessageFile {
   }
   void add(std::size_t topic, double log_time, std::string bytes) {
     ++topics_.at(topic).messages;
-    places_.push_back({topic, std::chrono::nanoseconds(static_cast<std::int64_t>(log_time * 1e9)), bytes_.size()});
+    places_.push_back(
+        {topic, std::chrono::milliseconds(static_cast<std::int64_t>(log_time * 1000.0 + 0.5)), bytes_.size()});
     bytes_.push_back(std::move(bytes));
   }
 

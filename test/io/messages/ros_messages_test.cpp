@@ -171,6 +171,7 @@ TEST(RosMessages, AreReadOrRefusedWhenDamaged) {
       // The number of the message and the encoding in front of its bytes.
       good.push_back(static_cast<char>(messages.size() - 1) + encoding + '\n' + bytes);
     }
+  ASSERT_FALSE(messages.empty());
   ASSERT_LE(messages.size(), 256u);
   test::expectMutationsReadOrRefused(good, [&](const std::string& bytes) {
     const std::size_t end = bytes.find('\n');
