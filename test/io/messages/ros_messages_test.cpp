@@ -153,7 +153,8 @@ void decodeAny(const KnownMessage& message, const std::string& encoding, const s
 
 TEST(RosMessages, AreRefusedIfTheyEndEarlyOrLate) {
   for (const KnownMessage& message : knownMessages())
-    for (const auto& [encoding, bytes] : message.bytes) {
+    for (const auto& known : message.bytes) {
+      const std::string &encoding = known.first, &bytes = known.second;
       SCOPED_TRACE(message.name + " " + encoding);
       for (std::size_t size = 0; size < bytes.size(); ++size)
         ASSERT_NE(complaintOf([&] { decodeAny(message, encoding, bytes.substr(0, size)); }), "") << size;
