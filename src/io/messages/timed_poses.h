@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "gaussmap/core/pose.h"
+
+namespace gaussmap::detail {
+
+/// How far from the given times a pose may be taken.
+struct PoseTimeLimits {
+  std::chrono::nanoseconds between{0};  ///< interpolate between two poses that are at most this far apart
+  std::chrono::nanoseconds hold{0};     ///< otherwise take the nearest pose, which is at most this far away
+};
+
+/// Poses at times. Call finish() once after the last add(); then all functions are thread-safe.
+class TimedPoses {
+ public:
+  /// Adds a pose. It must have no fault (see poseFault()); the quaternion is normalised.
+  void add(std::chrono::nanoseconds time, const Pose& pose);
+  /// Sorts the poses by time. Of several poses at one time, the last one added remains.
+  void finish();
+
+  bool empty() const { return times_.empty(); }
+  std::size_t size() const { return times_.size(); }
+  std::chrono::nanoseconds first() const { return times_.front(); }
+  std::chrono::nanoseconds last() const { return times_.back(); }
+  /// Returns true if all poses are equal.
+  bool isConstant() const { return constant_; }
+  /// Returns the first pose. There must be one.
+  const Pose& front() const { return poses_.front(); }
+
+  /// Returns the pose at a time: linear interpolation of the translation, slerp of the rotation. Returns std::nullopt
+  /// if the limits do not allow it. Takes O(log n).
+  std::optional<Pose> at(std::chrono::nanoseconds time, const PoseTimeLimits& limits) const;
+  /// Returns the distance from a time to the nearest time of a pose. There must be one.
+  std::chrono::nanoseconds distance(std::chrono::nanoseconds time) const;
+
+ private:
+  std::vector<std::chrono::nanoseconds> times_;
+  std::vector<Pose> poses_;
+  bool sorted_ = true;
+  bool constant_ = true;
+};
+
+/// Returns the median of the steps between different times, or std::nullopt if there are not two different times.
+std::optional<std::chrono::nanoseconds> medianInterval(std::vector<std::chrono::nanoseconds> times);
+
+}  // namespace gaussmap::detail

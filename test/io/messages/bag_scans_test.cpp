@@ -1,0 +1,367 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/messages/bag_scans.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "io/files/hostile_files.h"
+#include "io/messages/bag_topics.h"
+#include "io/messages/memory_messages.h"
+
+namespace gaussmap::detail {
+namespace {
+
+using test::CloudBytes;
+using test::complaintOf;
+using test::expectComplaint;
+using test::odometryBytes;
+using test::poseAt;
+using test::poseBytes;
+using test::transformBytes;
+using test::WireBytes;
+
+constexpr double kStart = 1700000000.0;
+
+/// Ten clouds, 0.1 s apart, of a robot that moves with 1 m/s.
+class BagScansTest : public testing::Test {
+ protected:
+  BagScansTest() : bag_(std::make_unique<test::MemoryMessages>()) {}
+
+  void clouds(const std::string& topic = "/points", const std::string& frame = "lidar", double first = kStart) {
+    const std::size_t index = bag_->addTopic(topic, "sensor_msgs/PointCloud2");
+    CloudBytes cloud;
+    cloud.frame = frame;
+    for (int i = 0; i < 10; ++i) bag_->add(index, first + 0.1 * i, cloud.at(first + 0.1 * i));
+  }
+  void staticTransform(const std::string& parent, const std::string& child, const Pose& pose) {
+    bag_->add(bag_->addTopic("/tf_static", "tf2_msgs/TFMessage"), kStart, transformBytes(0.0, parent, child, pose));
+  }
+  void movingTransform(const std::string& parent, const std::string& child, double first = kStart - 0.05) {
+    const std::size_t index = bag_->addTopic("/tf", "tf2_msgs/TFMessage");
+    for (int i = 0; i < 12; ++i)
+      bag_->add(index, first + 0.1 * i, transformBytes(first + 0.1 * i, parent, child, poseAt(0.1 * i)));
+  }
+  void odometry(const std::string& topic, const std::string& parent, const std::string& child) {
+    const std::size_t index = bag_->addTopic(topic, "nav_msgs/Odometry");
+    for (int i = 0; i < 12; ++i)
+      bag_->add(index, kStart, odometryBytes(kStart - 0.05 + 0.1 * i, parent, child, poseAt(0.1 * i)));
+  }
+  std::unique_ptr<BagScans> open(const BagOptions& options = {}) {
+    return openBagScans(std::make_unique<test::MemoryMessages>(*bag_), "drive.bag", options);
+  }
+  std::string complaint(const BagOptions& options) {
+    return complaintOf([&] { open(options); });
+  }
+  static std::string warningsOf(const BagScans& scans) {
+    std::string all;
+    for (const std::string& warning : scans.warnings()) all += warning + "\n";
+    return all;
+  }
+  /// Expects the pose `offset` + 0.1 m per scan.
+  static void expectMotion(const BagScans& scans, double offset) {
+    for (std::size_t i = 0; i < scans.size(); ++i) {
+      const FileScanInfo info = scans.info(i);
+      ASSERT_TRUE(info.pose) << i << "\n" << warningsOf(scans);
+      EXPECT_NEAR(info.pose->translation.x(), offset + 0.1 * static_cast<double>(i), 1e-9);
+    }
+  }
+
+  std::unique_ptr<test::MemoryMessages> bag_;
+};
+
+BagOptions fromTf() {
+  BagOptions options;
+  options.poses = BagPoses::Tf;
+  return options;
+}
+BagOptions fromTopic(const std::string& topic) {
+  BagOptions options;
+  options.poses = BagPoses::Topic;
+  options.pose_topic = topic;
+  return options;
+}
+bool has(const std::string& text, const std::string& piece) {
+  return text.find(piece) != std::string::npos;
+}
+
+TEST_F(BagScansTest, HavePosesOfTransforms) {
+  clouds();
+  staticTransform("base_link", "lidar", poseAt(1.0));
+  movingTransform("odom", "base_link");
+  for (const BagOptions& options : {BagOptions(), fromTf(), fromTopic("tf")}) {
+    const auto scans = open(options);
+    ASSERT_EQ(scans->size(), 10u);
+    EXPECT_EQ(scans->kind(), "memory, sensor_msgs/PointCloud2");
+    EXPECT_EQ(scans->topic(), "/points");
+    EXPECT_EQ(scans->poseDescription(), "poses from tf: lidar in odom");
+    EXPECT_EQ(warningsOf(*scans), "");
+    expectMotion(*scans, 1.05);
+    const FileScanInfo info = scans->info(1);
+    EXPECT_EQ(info.name, "/points 1700000000.100000000");
+    EXPECT_EQ(info.time->count(), 1700000000100000000);
+    EXPECT_EQ(info.points, 2u);
+    EXPECT_EQ(scans->open(1)->size(), 2u);
+  }
+}
+
+TEST_F(BagScansTest, PreferMapOverOdomOverTheRoot) {
+  clouds();
+  movingTransform("odom", "lidar");
+  staticTransform("map", "odom", poseAt(100.0));
+  staticTransform("utm", "map", poseAt(1e6));
+  expectMotion(*open(), 100.05);
+  BagOptions options;
+  options.fixed_frame = "/utm";
+  EXPECT_EQ(open(options)->poseDescription(), "poses from tf: lidar in utm");
+  expectMotion(*open(options), 1000100.05);
+  options.fixed_frame = "mars";
+  options.poses = BagPoses::Tf;
+  expectComplaint(complaint(options), "drive.bag",
+                  {"tf gives no poses for /points: no transform has the frame mars; the frames are lidar, map, odom"});
+}
+
+TEST_F(BagScansTest, HavePosesOfOdometryAndTheStaticTransformToTheSensor) {
+  clouds();
+  odometry("/odom", "odom", "base_link");
+  staticTransform("base_link", "lidar", poseAt(2.0));
+  for (const BagOptions& options : {BagOptions(), fromTopic("odom")}) {
+    const auto scans = open(options);
+    EXPECT_EQ(scans->poseDescription(),
+              "poses from /odom (nav_msgs/Odometry): base_link in odom, then base_link -> lidar of tf");
+    EXPECT_EQ(warningsOf(*scans), "");
+    expectMotion(*scans, 2.05);
+  }
+}
+
+TEST_F(BagScansTest, PreferOdometryOverTransformsOnTheRobot) {
+  clouds();
+  odometry("/odom", "odom", "base_link");
+  movingTransform("base_link", "lidar");  // a sensor that is moved
+  const auto scans = open();
+  EXPECT_TRUE(has(scans->poseDescription(), "/odom")) << scans->poseDescription();
+  for (std::size_t i = 0; i < 10; ++i)
+    EXPECT_NEAR(scans->info(i).pose.value().translation.x(), 0.1 + 0.2 * static_cast<double>(i), 1e-9);
+}
+
+TEST_F(BagScansTest, SayThatAnExtrinsicMayBeNeeded) {
+  clouds();
+  odometry("/odom", "odom", "base_link");
+  const auto scans = open();
+  expectMotion(*scans, 0.05);
+  EXPECT_TRUE(has(warningsOf(*scans), "/odom gives the poses of base_link, but the scans are in the frame lidar"));
+  EXPECT_TRUE(has(warningsOf(*scans), "--extrinsic may be needed"));
+}
+
+TEST_F(BagScansTest, HavePosesOfEveryType) {
+  clouds();
+  const std::size_t pose = bag_->addTopic("/pose", "geometry_msgs/PoseStamped");
+  const std::size_t covariance = bag_->addTopic("/covariance", "geometry_msgs/PoseWithCovarianceStamped");
+  const std::size_t transform = bag_->addTopic("/transform", "geometry_msgs/TransformStamped");
+  for (int i = 0; i < 11; ++i) {
+    const double time = kStart + 0.1 * i;
+    bag_->add(pose, time, poseBytes(time, "map", poseAt(0.1 * i)));
+    bag_->add(covariance, time, WireBytes().header(time, "map").pose(poseAt(0.1 * i)).zeros(36).str());
+    bag_->add(transform, time, WireBytes().header(time, "map").text("lidar").pose(poseAt(0.1 * i)).str());
+  }
+  const std::size_t path = bag_->addTopic("/path", "nav_msgs/Path");
+  for (const std::uint32_t count : {3u, 11u}) {  // the first one is wrong: only the last one counts
+    WireBytes bytes;
+    bytes.header(kStart, "map").put(count);
+    for (std::uint32_t i = 0; i < count; ++i)
+      bytes.header(kStart + 0.1 * i, "map").pose(poseAt(count == 3 ? 77.0 : 0.1 * i));
+    bag_->add(path, kStart + 2.0, bytes.str());
+  }
+  for (const char* const topic : {"/pose", "/covariance", "/transform", "path"}) {
+    SCOPED_TRACE(topic);
+    const auto scans = open(fromTopic(topic));
+    expectMotion(*scans, 0.0);
+    EXPECT_EQ(has(warningsOf(*scans), "does not say whose poses it gives"), std::string(topic) != "/transform");
+  }
+  EXPECT_TRUE(has(open()->poseDescription(),
+                  "no poses: choose the topic with the poses of the sensor: /pose (geometry_msgs/PoseStamped, 11"));
+  EXPECT_FALSE(open()->info(0).pose);
+}
+
+TEST_F(BagScansTest, UseThePoseFrameThatIsGiven) {
+  clouds();
+  const std::size_t pose = bag_->addTopic("/pose", "geometry_msgs/PoseStamped");
+  for (int i = 0; i < 11; ++i) bag_->add(pose, kStart, poseBytes(kStart + 0.1 * i, "map", poseAt(0.1 * i)));
+  staticTransform("base_link", "lidar", poseAt(3.0));
+  BagOptions options = fromTopic("/pose");
+  options.pose_frame = "base_link";
+  const auto scans = open(options);
+  expectMotion(*scans, 3.0);
+  EXPECT_EQ(warningsOf(*scans), "");
+}
+
+TEST_F(BagScansTest, LeavePointsInTheFixedFrameWhereTheyAre) {
+  clouds("/cloud_registered", "camera_init");
+  odometry("/Odometry", "camera_init", "body");
+  auto scans = open();
+  EXPECT_EQ(scans->info(5).pose.value().translation.norm(), 0.0);
+  EXPECT_TRUE(has(warningsOf(*scans), "the positions of the sensor are unknown"));
+  movingTransform("camera_init", "body");
+  scans = open();
+  EXPECT_EQ(scans->poseDescription(), "poses from tf: camera_init in camera_init");
+  EXPECT_EQ(scans->info(5).pose.value().translation.norm(), 0.0);
+  EXPECT_TRUE(has(warningsOf(*scans), "the positions of the sensor are unknown"));
+}
+
+TEST_F(BagScansTest, HaveNoPosesIfNoneAreWanted) {
+  clouds();
+  movingTransform("odom", "lidar");
+  BagOptions options;
+  options.poses = BagPoses::None;
+  EXPECT_FALSE(open(options)->info(0).pose);
+  EXPECT_EQ(open(options)->poseDescription(), "");
+}
+
+TEST_F(BagScansTest, SayWhyThereAreNoPoses) {
+  clouds();
+  EXPECT_EQ(open()->poseDescription(), "no poses: the recording has no odometry, and no tf; give a file of poses");
+  expectComplaint(complaint(fromTf()), "drive.bag", {"the recording has no messages of tf"});
+  staticTransform("base_link", "velodyne", Pose());
+  EXPECT_TRUE(
+      has(open()->poseDescription(), "no transform in tf has the frame lidar (the frames are base_link, velodyne"));
+  staticTransform("map", "lidar", Pose());
+  EXPECT_TRUE(has(open()->poseDescription(), "the transform from lidar to map in tf does not move"));
+  const auto scans = open(fromTf());
+  EXPECT_TRUE(scans->info(0).pose);
+  EXPECT_TRUE(has(warningsOf(*scans), "all scans have the same pose"));
+  odometry("/a", "odom", "base_link");
+  odometry("/b", "odom", "base_link");
+  EXPECT_TRUE(
+      has(open()->poseDescription(), "/a (nav_msgs/Odometry, 12 messages), /b (nav_msgs/Odometry, 12 messages)"))
+      << open()->poseDescription();
+  expectComplaint(complaint(fromTopic("/c")), "drive.bag", {"has no topic /c with poses", "/a (nav_msgs/Odometry"});
+}
+
+TEST_F(BagScansTest, SayWhichScansHaveNoPose) {
+  clouds();
+  movingTransform("odom", "lidar", kStart + 0.15);
+  auto scans = open();
+  EXPECT_FALSE(scans->info(1).pose);
+  EXPECT_TRUE(scans->info(2).pose);
+  EXPECT_TRUE(
+      has(warningsOf(*scans),
+          "2 of 10 scans have no pose, first /points 1700000000.000000000: the transform odom -> lidar starts at "
+          "1700000000.150000000"))
+      << warningsOf(*scans);
+  BagOptions options;
+  options.max_time_gap = 0.06;
+  EXPECT_TRUE(open(options)->info(1).pose);
+  EXPECT_FALSE(open(options)->info(0).pose);
+}
+
+TEST_F(BagScansTest, TakeNoPoseThatIsTooFarAwayInTime) {
+  clouds("/points", "base_link", kStart + 1.0);
+  odometry("/odom", "odom", "base_link");
+  const auto scans = open();
+  EXPECT_TRUE(scans->info(0).pose);
+  EXPECT_FALSE(scans->info(2).pose);
+  EXPECT_TRUE(
+      has(warningsOf(*scans),
+          "s from the nearest pose, at most 0.050000000 s are allowed. The poses are from 1699999999.950000000"))
+      << warningsOf(*scans);
+}
+
+TEST_F(BagScansTest, LeaveOutPosesWithFaults) {
+  clouds("/points", "base_link");
+  const std::size_t index = bag_->addTopic("/odom", "nav_msgs/Odometry");
+  Pose zero;
+  zero.rotation.coeffs().setZero();
+  bag_->add(index, kStart, odometryBytes(kStart - 0.1, "odom", "base_link", zero));
+  for (int i = 0; i < 10; ++i)
+    bag_->add(index, kStart, odometryBytes(kStart + 0.1 * i, "odom", "base_link", poseAt(0.1 * i)));
+  const auto scans = open();
+  expectMotion(*scans, 0.0);
+  EXPECT_TRUE(
+      has(warningsOf(*scans), "1 poses are left out, first /odom at 1700000000.000000000, the quaternion is zero"))
+      << warningsOf(*scans);
+}
+
+TEST_F(BagScansTest, UseTheTimesOfRecordingIfTheHeadersHaveNone) {
+  const std::size_t index = bag_->addTopic("/points", "sensor_msgs/PointCloud2");
+  for (int i = 0; i < 3; ++i) bag_->add(index, kStart + i, CloudBytes().at(0.0));
+  const auto scans = open();
+  EXPECT_EQ(scans->info(2).name, "/points 1700000002.000000000");
+  EXPECT_TRUE(has(warningsOf(*scans), "3 scans have no time in the header"));
+}
+
+TEST_F(BagScansTest, UseTheTimesOfRecordingIfAsked) {
+  const std::size_t index = bag_->addTopic("/points", "sensor_msgs/PointCloud2");
+  for (int i = 0; i < 10; ++i) bag_->add(index, kStart + 0.1 * i, CloudBytes().at(12.0 + 0.1 * i));
+  movingTransform("odom", "lidar");
+  EXPECT_FALSE(open()->info(0).pose);
+  BagOptions options;
+  options.log_times = true;
+  expectMotion(*open(options), 0.05);
+}
+
+TEST_F(BagScansTest, AskForATopicIfSeveralHaveScans) {
+  clouds("/front/points");
+  clouds("/rear/points");
+  bag_->addTopic("/empty", "sensor_msgs/PointCloud2");
+  bag_->addTopic("/imu", "sensor_msgs/Imu");
+  expectComplaint(complaint({}), "drive.bag",
+                  {"has several topics with scans: /front/points (sensor_msgs/PointCloud2, 10 messages), /rear/points "
+                   "(sensor_msgs/PointCloud2, 10 messages); choose one with --topic /front/points"});
+  BagOptions options;
+  options.topic = "rear/points";
+  EXPECT_EQ(open(options)->topic(), "/rear/points");
+  options.topic = "/imu";
+  expectComplaint(complaint(options), "drive.bag", {"topic /imu (sensor_msgs/Imu, 0 messages) holds no scans"});
+  options.topic = "/empty";
+  expectComplaint(complaint(options), "drive.bag", {"topic /empty has no messages"});
+  options.topic = "/none";
+  expectComplaint(complaint(options), "drive.bag", {"has no topic /none; the topics with scans are /front/points"});
+}
+
+TEST_F(BagScansTest, TakeALaserIfThereIsNoCloud) {
+  WireBytes laser;
+  laser.header(kStart, "laser");
+  for (const float value : {0.0f, 1.0f, 0.5f, 0.0f, 0.1f, 0.1f, 9.0f}) laser.put(value);
+  laser.put(std::uint32_t{1}).put(2.0f).put(std::uint32_t{0});
+  bag_->addTopic("/points", "sensor_msgs/PointCloud2");
+  bag_->add(bag_->addTopic("/scan", "sensor_msgs/LaserScan"), kStart, laser.str());
+  EXPECT_EQ(open()->kind(), "memory, sensor_msgs/LaserScan");
+  bag_ = std::make_unique<test::MemoryMessages>();
+  bag_->addTopic("/velodyne_packets", "velodyne_msgs/VelodyneScan", MessageEncoding::Other);
+  expectComplaint(
+      complaint({}), "drive.bag",
+      {"has no messages of sensor_msgs/PointCloud2 or sensor_msgs/LaserScan; its topics are /velodyne_packets"});
+}
+
+TEST_F(BagScansTest, NameTheMessageThatIsDamaged) {
+  clouds();
+  bag_->add(bag_->addTopic("/tf", "tf2_msgs/TFMessage"), kStart, "ab");
+  expectComplaint(complaint({}), "drive.bag",
+                  {"/tf, message recorded at 1700000000.000000000: transforms needs 4 bytes"});
+}
+
+TEST_F(BagScansTest, HaveASummary) {
+  clouds();
+  movingTransform("odom", "base");
+  bag_->addTopic("/points", "sensor_msgs/PointCloud2");  // a second node
+  bag_->add(bag_->addTopic("/pose", "geometry_msgs/PoseStamped"), kStart + 1.0, "ab");
+  bag_->addTopic("/imu", "sensor_msgs/Imu");
+  const BagSummary summary = bagSummary(*bag_, "drive.bag");
+  ASSERT_EQ(summary.topics.size(), 4u);
+  const BagTopicSummary& points = summary.topics[0];
+  EXPECT_EQ(points.name, "/points");
+  EXPECT_EQ(points.messages, 10u);
+  EXPECT_EQ(points.frame, "lidar");
+  EXPECT_NEAR(static_cast<double>(points.median_interval.value().count()), 1e8, 1e3);
+  EXPECT_EQ(points.first.value().count(), 1700000000000000000);
+  EXPECT_EQ(summary.topics[1].frame, "odom");
+  EXPECT_EQ(summary.topics[2].frame, "");
+  EXPECT_FALSE(summary.topics[3].first);
+  ASSERT_EQ(summary.warnings.size(), 1u);
+  EXPECT_TRUE(has(summary.warnings[0], "/pose, message recorded at")) << summary.warnings[0];
+}
+
+}  // namespace
+}  // namespace gaussmap::detail
