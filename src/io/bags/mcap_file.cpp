@@ -116,6 +116,7 @@ void McapFile::readRecords() {
 }
 
 void McapFile::reportEnd(Place place, const McapRecord& record) {
+  if (!in_summary_) index_.distrust(last_chunk_);  // some of its index records can be missing
   if (in_summary_ || has_end_) {
     warn("byte " + std::to_string(place) + ": the file is damaged, what follows is not used");
     return;

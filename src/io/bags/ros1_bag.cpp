@@ -59,6 +59,7 @@ class Ros1Bag : public MessageFile {
   std::uint32_t chunk_count_ = 0;
   std::size_t last_chunk_ = 0;  // the chunk that the next index records describe
   std::size_t infos_ = 0;
+  std::size_t empty_chunks_ = 0;
   std::uint64_t info_messages_ = 0;
   std::uint64_t messages_outside_ = 0;  // of chunks
   std::int64_t counted_ = -1;
@@ -83,14 +84,15 @@ void Ros1Bag::readRecords() {
     readRecord(place, record);
   }
   if (place < bytes.size() || index_place_ == 0) return reportEnd(place, record);
-  if (infos_ != chunk_count_ || store_.chunks() != chunk_count_)
+  if (infos_ != chunk_count_ || store_.chunks() + empty_chunks_ != chunk_count_)
     warn("the bag announces " + std::to_string(chunk_count_) + " chunks, but it has " +
-         std::to_string(store_.chunks()) + " and describes " + std::to_string(infos_));
+         std::to_string(store_.chunks() + empty_chunks_) + " and describes " + std::to_string(infos_));
   else if (info_messages_ < kMaxCounted)
     counted_ = static_cast<std::int64_t>(info_messages_ + messages_outside_);
 }
 
 void Ros1Bag::reportEnd(std::size_t place, const Ros1Record& record) {
+  index_.distrust(last_chunk_);  // some of its index records can be missing
   if (index_place_ != 0 && place >= index_place_) {
     warn("byte " + std::to_string(place) + ": the index at the end is damaged");
     return;
@@ -151,7 +153,9 @@ void Ros1Bag::readChunkRecord(std::size_t place, const Ros1Record& record) {
     fail(place, "the chunk is compressed with " + quote(compression) +
                     ", but only none, bz2 and lz4 are known: decompress it with `rosbag decompress` of ROS 1");
   compressions_.insert(chunk.compression);
-  last_chunk_ = store_.add(chunk);
+  // The last chunk of an unfinished bag has no size yet. Without compression its records follow as records of the file.
+  last_chunk_ = size == 0 && chunk.packed.empty() ? 0 : store_.add(chunk);
+  empty_chunks_ += last_chunk_ == 0;
 }
 
 // The records after a chunk have the times and places of its messages, one record per connection.
