@@ -77,7 +77,7 @@ void MessageIndex::sortByPlace() {
 }
 
 void MessageIndex::readChunk(std::size_t chunk, const ReadChunk& read_chunk) {
-  indexed_[chunk] = false;
+  read_[chunk] = true;
   try {
     read_chunk(chunk, store_->bytes(chunk).bytes);
   } catch (const FileError& error) {
@@ -86,35 +86,23 @@ void MessageIndex::readChunk(std::size_t chunk, const ReadChunk& read_chunk) {
   }
 }
 
-void MessageIndex::readChunksWithoutIndex(const ReadChunk& read_chunk) {
-  messages_.erase(
-      std::remove_if(messages_.begin(), messages_.end(),
-                     [&](const MessagePlace& message) { return chunkOf(message) != 0 && !indexed_[chunkOf(message)]; }),
-      messages_.end());  // of chunks with damaged index records
-  for (std::size_t chunk = 1; chunk < indexed_.size(); ++chunk)
-    if (!indexed_[chunk]) readChunk(chunk, read_chunk);
-  sortByPlace();
-}
-
-// A channel that no summary defines is defined in the first chunk that uses it, or before.
-void MessageIndex::readChunksWithUnknownChannels(const ReadChunk& read_chunk) {
-  std::vector<bool> read(indexed_.size(), false);
-  std::size_t next = 1;  // the chunks before it have been read
+void MessageIndex::readChunks(const ReadChunk& read_chunk) {
   const std::size_t known = messages_.size();
+  const std::vector<bool> before = read_;
+  // A channel that no summary defines is defined in the first chunk that uses it, or before.
+  std::size_t next = 1;  // the chunks before it have been read
   for (std::size_t i = 0; i < known; ++i) {
-    const std::size_t chunk = chunkOf(messages_[i]);
-    if (chunk < next || channels_.count(static_cast<std::uint32_t>(messages_[i].topic)) > 0) continue;
-    for (; next <= chunk; ++next) {
-      if (!indexed_[next]) continue;
-      read[next] = true;
-      readChunk(next, read_chunk);
-    }
+    if (channels_.count(static_cast<std::uint32_t>(messages_[i].topic)) > 0) continue;
+    for (; next <= chunkOf(messages_[i]); ++next)
+      if (!read_[next]) readChunk(next, read_chunk);
   }
-  if (next == 1) return;
-  const auto end_of_old = messages_.begin() + static_cast<std::ptrdiff_t>(known);
-  messages_.erase(std::remove_if(messages_.begin(), end_of_old,
-                                 [&](const MessagePlace& message) { return read[chunkOf(message)]; }),
-                  end_of_old);
+  for (std::size_t chunk = 1; chunk < indexed_.size(); ++chunk)
+    if (!indexed_[chunk] && !read_[chunk]) readChunk(chunk, read_chunk);
+  const auto end_of_known = messages_.begin() + static_cast<std::ptrdiff_t>(known);
+  messages_.erase(
+      std::remove_if(messages_.begin(), end_of_known,
+                     [&](const MessagePlace& message) { return read_[chunkOf(message)] && !before[chunkOf(message)]; }),
+      end_of_known);
   sortByPlace();
 }
 
@@ -122,11 +110,7 @@ void MessageIndex::compareCount(std::uint64_t counted, const ReadChunk& read_chu
   if (counted == messages_.size()) return;
   const std::size_t before = messages_.size();
   std::fill(indexed_.begin(), indexed_.end(), false);
-  messages_.erase(std::remove_if(messages_.begin(), messages_.end(),
-                                 [](const MessagePlace& message) { return chunkOf(message) != 0; }),
-                  messages_.end());
-  damaged_chunks_ = 0;
-  readChunksWithoutIndex(read_chunk);
+  readChunks(read_chunk);
   if (messages_.size() != before)
     warnings_.push_back("the index has " + std::to_string(before) + " messages, but the chunks have " +
                         std::to_string(messages_.size()) + ": the chunks were read instead");
@@ -145,8 +129,8 @@ void MessageIndex::reportDamage() {
 
 void MessageIndex::finish(std::int64_t counted, const ReadChunk& read_chunk) {
   indexed_.resize(store_->chunks() + 1, false);
-  readChunksWithoutIndex(read_chunk);
-  readChunksWithUnknownChannels(read_chunk);
+  read_.resize(store_->chunks() + 1, false);
+  readChunks(read_chunk);
   if (counted >= 0) compareCount(static_cast<std::uint64_t>(counted), read_chunk);
   reportDamage();
   makeTopics();

@@ -72,8 +72,7 @@ class MessageIndex {
   static constexpr int kOffsetBits = 40;
   void sortByPlace();
   void readChunk(std::size_t chunk, const ReadChunk& read_chunk);
-  void readChunksWithoutIndex(const ReadChunk& read_chunk);
-  void readChunksWithUnknownChannels(const ReadChunk& read_chunk);
+  void readChunks(const ReadChunk& read_chunk);
   void compareCount(std::uint64_t counted, const ReadChunk& read_chunk);
   void reportDamage();
   void makeTopics();
@@ -81,7 +80,8 @@ class MessageIndex {
   const ChunkStore* store_;
   std::map<std::uint32_t, Channel> channels_;
   std::unordered_map<std::uint32_t, std::size_t> topic_of_channel_;
-  std::vector<bool> indexed_;           // for each chunk: its messages come from index records
+  std::vector<bool> indexed_;           // for each chunk: it has index records
+  std::vector<bool> read_;              // for each chunk: it was read, so its index records are not used
   std::vector<MessagePlace> messages_;  // before makeTopics(), `topic` is the number of the channel
   std::vector<MessageTopic> topics_;
   std::vector<std::string> warnings_;
