@@ -72,7 +72,7 @@ class JoinedRecordings : public MessageFile {
 }  // namespace
 
 std::unique_ptr<MessageFile> joinRecordings(std::vector<std::unique_ptr<MessageFile>> files,
-                                            std::vector<std::string> names, std::vector<std::string> warnings) {
+                                            const std::vector<std::string>& names, std::vector<std::string> warnings) {
   return std::make_unique<JoinedRecordings>(std::move(files), names, std::move(warnings));
 }
 

@@ -73,7 +73,7 @@ std::unique_ptr<MessageFile> openMessageFile(const fs::path& path) {
     names.push_back(file.filename().string());
   }
   if (files.empty()) throw FileError(path, "all files of the recording are empty");
-  return joinRecordings(std::move(files), std::move(names), std::move(folder.warnings));
+  return joinRecordings(std::move(files), names, std::move(folder.warnings));
 }
 
 bool isMessageFile(const fs::path& path) {

@@ -30,6 +30,6 @@ std::unique_ptr<MessageFile> openRecordingFile(const std::filesystem::path& path
 
 /// Joins the files of a recording: topics with the same name, type and encoding become one. Throws FileError.
 std::unique_ptr<MessageFile> joinRecordings(std::vector<std::unique_ptr<MessageFile>> files,
-                                            std::vector<std::string> names, std::vector<std::string> warnings);
+                                            const std::vector<std::string>& names, std::vector<std::string> warnings);
 
 }  // namespace gaussmap::detail

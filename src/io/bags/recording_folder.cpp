@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <fstream>
-#include <iterator>
 #include <set>
 #include <string_view>
 #include <system_error>
@@ -45,8 +44,9 @@ std::vector<fs::path> filesIn(const fs::path& folder) {
 std::string metadataOf(const fs::path& folder) {
   std::error_code error;
   if (!fs::is_regular_file(folder / kMetadata, error)) return "";
+  const std::uintmax_t bytes = fs::file_size(folder / kMetadata, error);
   std::ifstream file(folder / kMetadata, std::ios::binary);
-  std::string text(kLongestMetadata, '\0');
+  std::string text(error ? 0 : static_cast<std::size_t>(std::min<std::uintmax_t>(bytes, kLongestMetadata)), '\0');
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0)));
   return text;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <system_error>
@@ -48,6 +49,7 @@ class Rosbag2Database : public MessageFile {
       requireTables();
       readTopics();
       readPlaces();
+      select_ = std::make_unique<Statement>(*database_, "SELECT data FROM messages WHERE rowid = ?");
     });
   }
 
@@ -70,7 +72,8 @@ class Rosbag2Database : public MessageFile {
   std::vector<MessageTopic> topics_;
   std::vector<MessagePlace> messages_;
   std::vector<std::string> warnings_;
-  mutable std::mutex mutex_;  // SQLite's state of the steps is not thread-safe
+  mutable std::mutex mutex_;  // of the statement
+  std::unique_ptr<Statement> select_;
 };
 
 void Rosbag2Database::lookForJournals() {
@@ -152,10 +155,10 @@ std::vector<char> Rosbag2Database::read(const MessagePlace& message) const {
     std::vector<char> data;
     {
       const std::lock_guard<std::mutex> lock(mutex_);
-      Statement rows(*database_, "SELECT data FROM messages WHERE rowid = ?");
-      rows.bind(1, row);
-      if (!rows.step()) fail("cannot be found: the database is damaged");
-      const std::string_view bytes = rows.blob(0);
+      select_->reset();
+      select_->bind(1, row);
+      if (!select_->step()) fail("cannot be found: the database is damaged");
+      const std::string_view bytes = select_->blob(0);
       data.assign(bytes.begin(), bytes.end());
     }
     if (topics_.at(message.topic).encoding != MessageEncoding::Cdr || !isZstd({data.data(), data.size()})) return data;
