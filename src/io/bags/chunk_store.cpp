@@ -3,6 +3,7 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "gaussmap/core/error.h"
@@ -10,7 +11,7 @@
 namespace gaussmap::detail {
 namespace {
 
-constexpr std::uint64_t kKeptBytes = std::uint64_t{64} << 20;
+constexpr std::uint64_t kMostKeptBytes = std::uint64_t{512} << 20;
 
 std::uint32_t crcOf(std::string_view bytes) {
   return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
@@ -33,10 +34,10 @@ std::size_t ChunkStore::add(const Chunk& chunk) {
     if (chunk.size != chunk.packed.size()) refuse("without compression both must be equal");
   } else {
     if (chunk.size > maxExpanded(chunk.packed.size())) refuse("the file is damaged, or made to fill the memory");
-    constexpr std::uint64_t kAlways = std::uint64_t{1} << 30, kTimes = 200;
+    constexpr std::uint64_t kAlways = kMostKeptBytes, kTimes = 200;
     total_ += chunk.size;  // cannot overflow, because each chunk is limited
     if (total_ > kAlways + kTimes * file().size())
-      refuse("all chunks together have more than 1 GiB and 200 times the size of the file");
+      refuse("all chunks together have more than 512 MiB and 200 times the size of the file");
   }
   chunks_.push_back(chunk);
   return chunks_.size() - 1;
@@ -71,12 +72,18 @@ std::shared_ptr<ChunkStore::Slot> ChunkStore::slotOf(std::size_t number) const {
     kept_.splice(kept_.begin(), kept_, found->second);
     return found->second->second;
   }
+  // If a chunk is needed again soon after it was dropped, messages of many chunks are interleaved in time. Then more
+  // chunks are kept, because expanding a chunk for each message could take hours.
+  const auto dropped = dropped_.find(number);
+  if (dropped != dropped_.end() && drops_ - dropped->second <= 2 * kept_.size() + 4)
+    keep_bytes_ = std::min(2 * keep_bytes_, kMostKeptBytes);
   kept_.emplace_front(number, std::make_shared<Slot>());
   places_[number] = kept_.begin();
   kept_bytes_ += chunks_[number].size;
-  while (kept_bytes_ > kKeptBytes && kept_.size() > 1) {
+  while (kept_bytes_ > keep_bytes_ && kept_.size() > 1) {
     kept_bytes_ -= chunks_[kept_.back().first].size;
     places_.erase(kept_.back().first);
+    dropped_[kept_.back().first] = ++drops_;
     kept_.pop_back();
   }
   return kept_.front().second;

@@ -44,7 +44,7 @@ class ChunkStore {
   std::size_t chunks() const { return chunks_.size() - 1; }
 
   /// Adds a chunk and returns its number, from 1. Throws FileError if its size is not plausible: a chunk can expand to
-  /// maxExpanded() of its size, and all chunks together to 1 GiB and 200 times the size of the file.
+  /// maxExpanded() of its size, and all chunks together to 512 MiB and 200 times the size of the file.
   std::size_t add(const Chunk& chunk);
   const Chunk& chunk(std::size_t number) const { return chunks_[number]; }
 
@@ -77,6 +77,9 @@ class ChunkStore {
   mutable Kept kept_;         // the most recently used chunk comes first
   mutable std::unordered_map<std::size_t, Kept::iterator> places_;
   mutable std::uint64_t kept_bytes_ = 0;
+  mutable std::uint64_t keep_bytes_ = std::uint64_t{64} << 20;
+  mutable std::unordered_map<std::size_t, std::uint64_t> dropped_;  // value of drops_ when a chunk was dropped
+  mutable std::uint64_t drops_ = 0;
 };
 
 }  // namespace gaussmap::detail

@@ -164,6 +164,20 @@ TEST_F(McapFiles, LimitTheNumberOfMessagesOfABomb) {
   EXPECT_NE(test::warningsOf(directory_.path() / "a.mcap").find("messages: it is damaged"), std::string::npos);
 }
 
+// Two chunks of 40 MiB do not fit into the smallest cache. Without a larger one, each message would expand a chunk.
+TEST_F(McapFiles, KeepChunksWhoseMessagesAreInterleaved) {
+  std::string data = kDefinitions;
+  for (std::uint64_t parity = 0; parity < 2; ++parity) {
+    std::string chunk = mcap::record(0x80, std::string(std::size_t{40} << 20, '\0'));
+    for (std::uint64_t i = 0; i < 1000; ++i) chunk += mcap::message(1, 2 * i + parity, std::to_string(parity));
+    data += mcap::chunk(zstd(chunk), "zstd", chunk.size());
+  }
+  const Lines found = texts(mcap::file(data));
+  ASSERT_EQ(found.size(), 2000u);
+  EXPECT_EQ(found[0], "/a 0 0");
+  EXPECT_EQ(found[1999], "/a 1999 1");
+}
+
 TEST_F(McapFiles, ExpandCompressedMessages) {
   const std::string text = std::string("\0\1\0\0", 4) + std::string(100, 'x');
   EXPECT_EQ(texts(mcap::file(kDefinitions + mcap::message(1, 1, zstd(text)))), Lines{"/a 1 " + text});
