@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/bags/chunk_store.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "gaussmap/core/error.h"
+
+namespace gaussmap::detail {
+namespace {
+
+constexpr std::uint64_t kMostKeptBytes = std::uint64_t{512} << 20;
+
+std::uint32_t crcOf(std::string_view bytes) {
+  return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
+
+}  // namespace
+
+ChunkStore::ChunkStore(const std::filesystem::path& path, std::filesystem::path shown)
+    : shown_(std::move(shown)), file_(path), chunks_(1) {
+  chunks_[0].packed = file_.bytes();
+}
+
+std::size_t ChunkStore::add(const Chunk& chunk) {
+  const auto refuse = [&](const std::string& what) {
+    throw FileError(shown_, "byte " + std::to_string(chunk.byte) + ": the chunk of " +
+                                std::to_string(chunk.packed.size()) + " bytes (" + nameOf(chunk.compression) +
+                                ") claims to expand to " + std::to_string(chunk.size) + " bytes: " + what);
+  };
+  if (chunk.compression == Compression::None) {
+    if (chunk.size != chunk.packed.size()) refuse("without compression both must be equal");
+  } else {
+    if (chunk.size > maxExpanded(chunk.packed.size())) refuse("the file is damaged, or made to fill the memory");
+    constexpr std::uint64_t kAlways = kMostKeptBytes, kTimes = 200;
+    total_ += chunk.size;  // cannot overflow, because each chunk is limited
+    if (total_ > kAlways + kTimes * file().size())
+      refuse("all chunks together have more than 512 MiB and 200 times the size of the file");
+  }
+  chunks_.push_back(chunk);
+  return chunks_.size() - 1;
+}
+
+ChunkBytes ChunkStore::bytes(std::size_t number) const {
+  const Chunk& chunk = chunks_.at(number);
+  const bool packed = chunk.compression != Compression::None;
+  if (!packed && chunk.crc == 0) {
+    file_.requireWhole();
+    return {chunk.packed, nullptr};
+  }
+  const std::shared_ptr<Slot> slot = slotOf(number);
+  const std::lock_guard<std::mutex> lock(slot->filling);
+  if (packed && !slot->bytes) slot->bytes = expanded(chunk);
+  const std::string_view bytes =
+      packed ? std::string_view(slot->bytes.get(), static_cast<std::size_t>(chunk.size)) : chunk.packed;
+  if (!slot->checked) check(chunk, bytes);
+  slot->checked = true;
+  return {bytes, slot->bytes};
+}
+
+void ChunkStore::check(const Chunk& chunk, std::string_view bytes) const {
+  file_.requireWhole();
+  if (chunk.crc != 0 && crcOf(bytes) != chunk.crc) fail(0, chunk.byte, "the chunk is damaged: its CRC is wrong");
+}
+
+std::shared_ptr<ChunkStore::Slot> ChunkStore::slotOf(std::size_t number) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto found = places_.find(number);
+  if (found != places_.end()) {
+    kept_.splice(kept_.begin(), kept_, found->second);
+    return found->second->second;
+  }
+  // If a chunk is needed again soon after it was dropped, messages of many chunks are interleaved in time. Then more
+  // chunks are kept, because expanding a chunk for each message could take hours.
+  const auto dropped = dropped_.find(number);
+  if (dropped != dropped_.end() && drops_ - dropped->second <= 2 * kept_.size() + 4)
+    keep_bytes_ = std::min(2 * keep_bytes_, kMostKeptBytes);
+  kept_.emplace_front(number, std::make_shared<Slot>());
+  places_[number] = kept_.begin();
+  kept_bytes_ += chunks_[number].size;
+  while (kept_bytes_ > keep_bytes_ && kept_.size() > 1) {
+    kept_bytes_ -= chunks_[kept_.back().first].size;
+    places_.erase(kept_.back().first);
+    dropped_[kept_.back().first] = ++drops_;
+    kept_.pop_back();
+  }
+  return kept_.front().second;
+}
+
+std::shared_ptr<const char[]> ChunkStore::expanded(const Chunk& chunk) const {
+  const auto size = static_cast<std::size_t>(chunk.size);
+  const std::shared_ptr<char[]> bytes(new char[size > 0 ? size : 1]);  // not filled with zeros first
+  const std::string error = expand(chunk.compression, chunk.packed, bytes.get(), size);
+  file_.requireWhole();
+  if (!error.empty()) fail(0, chunk.byte, "the chunk (" + nameOf(chunk.compression) + ") " + error);
+  return bytes;
+}
+
+std::string ChunkStore::placeOf(std::size_t number, std::uint64_t offset) const {
+  const std::string byte = "byte " + std::to_string(offset);
+  return number == 0 ? byte : byte + " of the chunk at byte " + std::to_string(chunks_[number].byte);
+}
+
+void ChunkStore::fail(std::size_t number, std::uint64_t offset, const std::string& what) const {
+  throw FileError(shown_, placeOf(number, offset) + ": " + what);
+}
+
+}  // namespace gaussmap::detail

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "io/bags/compression.h"
+#include "io/files/mapped_file.h"
+
+namespace gaussmap::detail {
+
+/// A compressed piece of a recording.
+struct Chunk {
+  std::size_t byte = 0;     ///< place of its record in the file
+  std::string_view packed;  ///< in the mapped file
+  std::uint64_t size = 0;   ///< expanded
+  Compression compression = Compression::None;
+  std::uint32_t crc = 0;  ///< CRC-32 of the expanded bytes; 0: unknown
+};
+
+/// Expanded bytes. They stay valid as long as the object and the store live.
+struct ChunkBytes {
+  std::string_view bytes;
+  std::shared_ptr<const char[]> owner;
+};
+
+/// A mapped file and its chunks, which are expanded when they are needed. The most recently used chunks are kept, at
+/// most 64 MiB or one chunk. bytes() is thread-safe.
+class ChunkStore {
+ public:
+  /// Maps a file. `shown` is its path in messages.
+  ChunkStore(const std::filesystem::path& path, std::filesystem::path shown);
+
+  std::string_view file() const { return file_.bytes(); }
+  const std::filesystem::path& path() const { return shown_; }
+  std::size_t chunks() const { return chunks_.size() - 1; }
+
+  /// Adds a chunk and returns its number, from 1. Throws FileError if its size is not plausible: a chunk can expand to
+  /// maxExpanded() of its size, and all chunks together to 512 MiB and 200 times the size of the file.
+  std::size_t add(const Chunk& chunk);
+  const Chunk& chunk(std::size_t number) const { return chunks_[number]; }
+
+  /// Returns the expanded bytes of a chunk, or those of the whole file if `number` is 0. Throws FileError if they are
+  /// damaged.
+  ChunkBytes bytes(std::size_t number) const;
+
+  /// Throws FileError with a place: byte `offset` of a chunk, or of the file if `number` is 0.
+  [[noreturn]] void fail(std::size_t number, std::uint64_t offset, const std::string& what) const;
+  /// Returns "byte 17 of the chunk at byte 4096", or "byte 17" if `number` is 0.
+  std::string placeOf(std::size_t number, std::uint64_t offset) const;
+
+ private:
+  struct Slot {
+    std::mutex filling;
+    std::shared_ptr<const char[]> bytes;
+    bool checked = false;
+  };
+  using Kept = std::list<std::pair<std::size_t, std::shared_ptr<Slot>>>;
+
+  std::shared_ptr<Slot> slotOf(std::size_t number) const;
+  std::shared_ptr<const char[]> expanded(const Chunk& chunk) const;
+  void check(const Chunk& chunk, std::string_view bytes) const;
+
+  std::filesystem::path shown_;
+  MappedFile file_;
+  std::vector<Chunk> chunks_;
+  std::uint64_t total_ = 0;
+  mutable std::mutex mutex_;  // of the members below
+  mutable Kept kept_;         // the most recently used chunk comes first
+  mutable std::unordered_map<std::size_t, Kept::iterator> places_;
+  mutable std::uint64_t kept_bytes_ = 0;
+  mutable std::uint64_t keep_bytes_ = std::uint64_t{64} << 20;
+  mutable std::unordered_map<std::size_t, std::uint64_t> dropped_;  // value of drops_ when a chunk was dropped
+  mutable std::uint64_t drops_ = 0;
+};
+
+}  // namespace gaussmap::detail
