@@ -7,7 +7,8 @@ set -euo pipefail
 packages=(
   g++ cmake ninja-build ccache pkg-config
   libeigen3-dev libtbb-dev libnanoflann-dev libboost-dev   # core: algebra, threads, nearest neighbours, containers
-  libsqlite3-dev libzstd-dev liblzf-dev zlib1g-dev         # core: map files, compressed PCD, laser logs
+  libsqlite3-dev libzstd-dev liblzf-dev zlib1g-dev         # files: maps, compressed PCD, laser logs
+  liblz4-dev libbz2-dev libpugixml-dev                     # files: recordings of ROS, E57
   libpcl-dev                                               # PCL plug-ins
   libvtk9-dev libegl-dev libegl-mesa0 libx11-dev           # viewer; Mesa draws pictures without a display
   libcli11-dev nlohmann-json3-dev                          # command line

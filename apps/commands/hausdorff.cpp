@@ -9,6 +9,7 @@
 #include "commands/commands.h"
 #include "common/command.h"
 #include "gaussmap/io/pcd/map_pcd.h"
+#include "io/ply/ply_header.h"
 
 namespace gaussmap::app {
 namespace {
@@ -20,7 +21,7 @@ const Help kHausdorffHelp = {
 grows with the number of samples, so compare maxima only at equal --samples, or compare quantiles. The rows "2 sigma"
 use only the samples within 2 standard deviations of their means.
 
-Clouds are combined as in pcd2map. For a mesh, map->ref are exact distances to its surface, and ref->map are the
+Clouds are combined as in pcd2map. A PLY file with faces is a mesh, without faces a cloud. For a mesh, map->ref are exact distances to its surface, and ref->map are the
 distances of --samples points on it. Another map is sampled in the same way at the same scale, so the distance of two
 equal maps is 0.
 
@@ -38,7 +39,7 @@ const std::map<std::string, SampleBounds> kBounds = {{"members", SampleBounds::M
                                                      {"cell", SampleBounds::Cell}};
 
 bool isMesh(const std::string& path) {
-  return endingOf(path) == ".ply";
+  return endingOf(path) == ".ply" && detail::isPlyMesh(path);
 }
 
 ReferenceKind kindOf(const std::vector<std::string>& paths) {
@@ -102,9 +103,13 @@ void addSampleOptions(Command& command, SampleOptions& samples) {
 void addHausdorff(CLI::App& app) {
   auto options = std::make_shared<HausdorffCommand>();
   Command command(app, "hausdorff", kHausdorffHelp);
-  command.text("subject", options->subject, "map (.gmap, or PCD of Gaussians), or a PCD cloud or directory").required();
   command
-      .texts("reference", options->reference.paths, "PCD files or directories of them, or one mesh (PLY), or one map")
+      .text("subject", options->subject,
+            "map (.gmap, or PCD of Gaussians), or a cloud (of any kind that pcd2map reads) or directory")
+      .required();
+  command
+      .texts("reference", options->reference.paths,
+             "clouds or directories of them, or one mesh (PLY with faces), or one map")
       .required();
   const Option scale = command.scale(options->scale, "compare only this scale, 0 = finest; default: all scales");
   command.flag("--leaves", options->leaves, "compare all leaves of a compressed map at once").excludes(scale);
@@ -125,8 +130,9 @@ void addHausdorff(CLI::App& app) {
   addScanOptions(command, options->reference);
   command.threads(options->samples.threads);
   command.json(options->json);
-  command.files({"subject"}, {".gmap", ".pcd"});
-  command.files({"reference"}, {".pcd", ".ply", ".gmap"});
+  std::vector<std::string> endings = scanEndings();
+  endings.emplace_back(".gmap");
+  command.files({"subject", "reference"}, endings);
   command.files({"--write-errors"}, {".pcd"});
   command.onRun([options] { run(*options); });
 }

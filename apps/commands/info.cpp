@@ -51,6 +51,17 @@ std::string sentenceOf(const Json& step) {
   return sentence;
 }
 
+/// Returns the name in a WKT, for example PROJCS "NAD83 / UTM zone 15N"; or the start of another text.
+std::string nameOfSystem(const std::string& text) {
+  constexpr std::size_t kLongest = 100;
+  const std::size_t begin = text.find("[\""), end = begin == std::string::npos ? begin : text.find('"', begin + 2);
+  std::string name =
+      end == std::string::npos ? text : text.substr(0, begin) + " " + text.substr(begin + 1, end - begin);
+  for (char& c : name)
+    if (static_cast<unsigned char>(c) < 0x20) c = ' ';
+  return name.size() > kLongest ? name.substr(0, kLongest) + "..." : name;
+}
+
 /// Returns whether the map accepts more scans, and if not, why.
 std::string stateOf(const GaussianMap<3>& map, const MapMetadata& metadata) {
   const auto final_error = metadata.find(kFinalEntry);
@@ -185,6 +196,8 @@ void print(const MapInfo& info, const std::string& path) {
       std::printf("  %zu: %.3g / %.3g", point.gaussians, point.q95, point.mean);
     std::printf("\n");
   }
+  if (const auto system = info.metadata.find(kCoordinateSystemEntry); system != info.metadata.end())
+    std::printf("coordinate reference system: %s\n", nameOfSystem(system->second).c_str());
   const Json steps = jsonEntry(info.metadata, "history");
   if (!steps.is_array()) return;
   for (const Json& step : steps) std::printf("history: %s\n", sentenceOf(step).c_str());

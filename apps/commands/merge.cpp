@@ -45,13 +45,22 @@ void requireExact(const GaussianMap<3>& map, const std::string& path, bool is_mo
                               ", so it has no exact moments; leave out --exact to merge Gaussians");
 }
 
+/// Warns if two maps that are not moved have different coordinate reference systems.
+void warnOfOtherSystem(const MapMetadata& first, const MapMetadata& other, const std::string& path) {
+  const auto a = first.find(kCoordinateSystemEntry), b = other.find(kCoordinateSystemEntry);
+  if (a != first.end() && b != other.end() && a->second != b->second)
+    warn(path + ": the coordinate reference system differs from that of the first map, which the result keeps");
+}
+
 /// Loads the maps one after the other, transforms each into the frame and grid of the first map, and merges it.
 GaussianMap<3> merged(const MergeCommand& command, const Motions& motions, MapTask& task) {
   const std::vector<std::string>& paths = command.maps;
   GaussianMap<3> merged = task.load(paths.front());
   if (command.exact) requireExact(merged, paths.front(), !motions.poses.empty());
   for (std::size_t i = 1; i < paths.size(); ++i) {
-    GaussianMap<3> next = loadAny(paths[i]);
+    MapMetadata metadata;
+    GaussianMap<3> next = loadAny(paths[i], &metadata);
+    if (motions.poses.empty()) warnOfOtherSystem(task.metadata, metadata, paths[i]);
     if (command.exact) requireExact(next, paths[i], false);
     TransformOptions to;
     to.grid = merged.options();

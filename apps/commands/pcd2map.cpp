@@ -3,22 +3,26 @@
 #include "commands/pcd2map/pcd2map.h"
 
 #include <memory>
+#include <utility>
 
 #include "commands/commands.h"
 #include "commands/dropped_fields.h"
 #include "commands/pcd2map/scan_report.h"
 #include "common/command.h"
 #include "common/report.h"
+#include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/io/scans/file_scans.h"
 
 namespace gaussmap::app {
 namespace {
 
 const Help kPcd2mapHelp = {
-    "Build a map from PCD scans", "gaussmap pcd2map scans/*.pcd -o street.gmap --resolution 0.2 --budget 3",
-    R"(The pose of a scan is the VIEWPOINT of its file, or comes from --poses: TUM (t x y z qx qy qz qw), KITTI
-(12 numbers), CSV with a header line, and others. Poses are matched to scans by name, time or number, else by order.
-gaussmap scans shows the result. With --frame map, the points are already in the map frame.
+    "Build a map from scans", "gaussmap pcd2map scans/*.pcd -o street.gmap --resolution 0.2 --budget 3",
+    R"(Reads PCD, PLY, LAS, LAZ, E57, .bin (KITTI, nuScenes), text, PTS, PTX, and recordings of ROS (MCAP, rosbag2, bags of
+ROS 1). The pose of a scan is that in its file: VIEWPOINT, the pose in an E57 or PTX file, tf or odometry of a
+recording. --poses replaces it: TUM (t x y z qx qy qz qw), KITTI (12 numbers), CSV with a header line, and others.
+Poses are matched to scans by name, time or number, else by order. gaussmap scans shows the result. With --frame map,
+the points are already in the map frame. The points of LAS and LAZ files always are, unless --poses is given.
 
 --update adds scans to a map file and writes only the tiles that change. The finest scale then equals that of a map
 of all scans. Coarse cells with new points are rebuilt within --budget (default: the budget of the last refinement,
@@ -45,9 +49,11 @@ void run(const Pcd2mapOptions& options) {
   const FileScans scans =
       openScans(options.input, options.budget.refine.threads, options.online.on ? "option --online" : nullptr);
   noteDroppedFields(scans);
+  if (std::string system = coordinateSystemOf(scans); !system.empty())
+    task.metadata[kCoordinateSystemEntry] = std::move(system);
   const AccumulateOptions reading =
       accumulateOptions(options.input, options.map.resolution, options.budget.refine.threads);
-  const WrittenMap written = !options.max_memory.empty() ? buildWithinMemory(options, scans, reading)
+  const WrittenMap written = !options.max_memory.empty() ? buildWithinMemory(options, scans, reading, task)
                              : options.online.on         ? buildOnline(options, scans, reading, task)
                                                          : buildInMemory(options, scans, reading, task);
   warnOfCoordinates(scans, options.map.resolution);

@@ -28,10 +28,10 @@ const Help kRegisterHelp = {
 The fitness is the share of the scan that lies on the map, from 0 to 1. "degenerate" means that some direction is
 unobservable, for example along a corridor.
 
-The search for a scan starts at its own pose, from --poses or the VIEWPOINT in its header. If no part of the scan lies
+The search for a scan starts at its own pose, from --poses or its file (VIEWPOINT, tf of a recording ...). If no part of the scan lies
 on the map from there, it starts again from the pose found for the scan before, moved by the motion between the own
 poses of the two scans. With --guess, the first scan starts at the guess, and each other scan starts from the scan
-before in this way. VIEWPOINTs that are the same for all scans, or the identity for several scans, are no own poses.
+before in this way. Poses in files that are the same for all scans, or the identity for several scans, do not count.
 A scan without an own pose starts at the pose found for the scan before.
 
 A scan without usable points, a damaged file, or a scan that is not found on the map, gets a line on stderr, and the
@@ -50,13 +50,13 @@ struct RegisterCommand {
   bool json = false;
 };
 
-Json jsonOf(const std::filesystem::path& scan, const RegistrationResult& result) {
+Json jsonOf(const Subject& subject, const RegistrationResult& result) {
   const auto& t = result.pose.translation;
   const auto& q = result.pose.rotation;
   Json covariance = Json::array();
   for (Eigen::Index row = 0; row < 6; ++row)
     for (Eigen::Index column = 0; column < 6; ++column) covariance.push_back(result.covariance(row, column));
-  return {{"scan", scan.string()},
+  return {{"scan", subject.label()},
           {"translation", {t.x(), t.y(), t.z()}},
           {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}},
           {"covariance", covariance},
@@ -67,96 +67,128 @@ Json jsonOf(const std::filesystem::path& scan, const RegistrationResult& result)
           {"iterations", result.iterations}};
 }
 
-void print(const std::filesystem::path& scan, const RegistrationResult& result) {
+void print(const Subject& subject, const RegistrationResult& result) {
   const auto& t = result.pose.translation;
   const auto& q = result.pose.rotation;
   const auto deviation = [&](int axis) { return std::sqrt(result.covariance(axis, axis)); };
   const double degrees = 180.0 / std::acos(-1.0);
   std::printf("%s: %.4f %.4f %.4f  %.6f %.6f %.6f %.6f  +- %.4f %.4f %.4f m, %.3f %.3f %.3f deg, fitness %.3f%s%s\n",
-              scan.filename().string().c_str(), t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w(), deviation(0),
-              deviation(1), deviation(2), degrees * deviation(3), degrees * deviation(4), degrees * deviation(5),
-              result.fitness, result.converged ? "" : ", not converged", result.degenerate ? ", degenerate" : "");
+              subject.shortLabel().c_str(), t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w(), deviation(0), deviation(1),
+              deviation(2), degrees * deviation(3), degrees * deviation(4), degrees * deviation(5), result.fitness,
+              result.converged ? "" : ", not converged", result.degenerate ? ", degenerate" : "");
+}
+
+/// The scans and maps to register, and what their registration needs.
+struct Registration {
+  const RegisterCommand& command;
+  const GaussianMap<3>& map;
+  std::vector<Subject> subjects;
+  FileScans scans;                   // those of the subjects that are scans and can be opened
+  std::vector<std::size_t> scan_of;  // per subject: index in `scans`
+};
+
+/// Returns the scans of the subjects. Their poses are not set.
+FileScans scansOf(const std::vector<Subject>& subjects, const FileOptions& options, std::vector<std::size_t>& scan_of) {
+  std::vector<FileScan> scans;
+  for (const Subject& subject : subjects) {
+    scan_of.push_back(scans.size());
+    if (!subject.is_map && subject.error.empty())
+      scans.push_back({subject.path, Pose(), std::nullopt, subject.index, subject.name});
+  }
+  return FileScans(std::move(scans), ScanFrame::Sensor, options);
 }
 
 /// Registers a scan or a map. Throws FileError if the file is damaged or has no usable point.
-RegistrationResult registerFile(const std::filesystem::path& path, const GaussianMap<3>& map, const Pose& guess,
-                                const RegisterCommand& command) {
-  if (isMap(path)) {
-    const GaussianMap<3> source = loadAny(path);
-    if (source.empty()) throw FileError(path, "the map is empty");
-    return registerMap(source, map, guess, command.options);
+RegistrationResult registerOne(const Registration& all, std::size_t i, const Pose& guess) {
+  const Subject& subject = all.subjects[i];
+  const RegisterCommand& command = all.command;
+  if (subject.is_map) {
+    const GaussianMap<3> source = loadAny(subject.path);
+    if (source.empty()) throw FileError(subject.path, "the map is empty");
+    return registerMap(source, all.map, guess, command.options);
   }
-  const FileScans scans({{path, Pose()}});
-  Scan scan = scans.read(0);
-  warnOfCoordinates(scans, map.grid().side(0));
-  detail::dropPoints(detail::limitsOf(accumulateOptions(command.input, map.grid().side(0), 0)), scan);
-  if (std::none_of(scan.points.begin(), scan.points.end(), isReturn)) throw FileError(path, "no usable point");
-  return registerScan(scan.points, map, guess, command.options);
+  Scan scan = all.scans.read(all.scan_of[i]);
+  detail::dropPoints(detail::limitsOf(accumulateOptions(command.input, all.map.grid().side(0), 0)), scan);
+  if (std::none_of(scan.points.begin(), scan.points.end(), isReturn))
+    throw FileError(subject.path, (subject.name.empty() ? "" : subject.name + ": ") + "no usable point");
+  return registerScan(scan.points, all.map, guess, command.options);
 }
 
 /// Tries the guesses until a part of the scan lies on the map. Throws FileError if none does.
-RegistrationResult findScan(const std::filesystem::path& path, const GaussianMap<3>& map,
-                            const std::vector<Pose>& guesses, const RegisterCommand& command) {
+RegistrationResult findScan(const Registration& all, std::size_t i, const std::vector<Pose>& guesses) {
+  const Subject& subject = all.subjects[i];
   for (const Pose& guess : guesses) {
-    RegistrationResult result = registerFile(path, map, guess, command);
+    RegistrationResult result = registerOne(all, i, guess);
     if (result.fitness > 0.0) return result;
   }
-  throw FileError(path, "no part of the scan lies on the map after the search; use a better --guess or --poses");
+  throw FileError(subject.path, (subject.name.empty() ? "" : subject.name + ": ") +
+                                    "no part of the scan lies on the map after the search; use a better --guess or "
+                                    "--poses");
 }
 
 /// Below this fitness the program says that the pose may be wrong. Measured: right poses of scans of a mapped place
 /// have 0.39 to 0.95.
 constexpr double kLowFitness = 0.35;
 
-void warnIfDoubtful(const std::filesystem::path& path, const RegistrationResult& result) {
+void warnIfDoubtful(const Subject& subject, const RegistrationResult& result) {
   if (result.fitness >= kLowFitness) return;
-  warn(path.string() + ": only " + formatted("%.0f", 100.0 * result.fitness) +
+  warn(subject.label() + ": only " + formatted("%.0f", 100.0 * result.fitness) +
        " % of the scan lies on the map, so the pose may be wrong; check it, or use a better --guess or --poses");
 }
 
 void run(const RegisterCommand& command) {
   const std::filesystem::path map_path = command.inputs.back();
-  const std::vector<std::filesystem::path> scans = listScans({command.inputs.begin(), std::prev(command.inputs.end())});
+  const std::vector<std::filesystem::path> files = listScans({command.inputs.begin(), std::prev(command.inputs.end())});
   if (!command.tum.empty()) {
-    std::vector<std::filesystem::path> inputs = scans;
+    std::vector<std::filesystem::path> inputs = files;
     inputs.push_back(map_path);
     if (!command.input.poses.empty()) inputs.emplace_back(command.input.poses);
     checkOutput({command.tum, command.force}, inputs);
     refuseOtherKinds(command.tum, "a file of poses", {".tum", ".txt", ".csv"});
   }
-  RegisterGuesses guesses(scans, findOptions(command.input), command.guess);
-  if (!command.input.poses.empty()) note(guesses.description());
+  ScanInput input = command.input;
+  input.paths = {command.inputs.begin(), std::prev(command.inputs.end())};
+  const FindScansOptions options = findOptions(input);
+  std::vector<Subject> subjects = subjectsIn(files, options);
+  RegisterGuesses guesses(subjects, options, command.guess);
+  if (!options.poses.empty()) note(guesses.description());
   for (const std::string& warning : guesses.warnings()) warn(warning);
   const GaussianMap<3> map = loadAny(map_path);
   if (map.empty()) throw FileError(map_path, "the map is empty, so no scan can be registered with it");
+  std::vector<std::size_t> scan_of;
+  FileScans scans = scansOf(subjects, options.files, scan_of);
+  const Registration all{command, map, std::move(subjects), std::move(scans), std::move(scan_of)};
 
   const std::vector<double> times = guesses.times();
-  Json all = Json::array();
+  Json found = Json::array();
   std::vector<TimedPose> trajectory;
   std::size_t not_found = 0;
-  for (std::size_t i = 0; i < scans.size(); ++i) {
+  for (std::size_t i = 0; i < all.subjects.size(); ++i) {
     if (guesses.isLeftOut(i)) continue;
+    const Subject& subject = all.subjects[i];
     try {
-      const RegistrationResult result = findScan(scans[i], map, guesses.of(i), command);
+      if (!subject.error.empty()) throw std::runtime_error(subject.error);
+      const RegistrationResult result = findScan(all, i, guesses.of(i));
       guesses.found(i, result.pose);
       trajectory.push_back({times[i], result.pose});
       if (command.json)
-        all.push_back(jsonOf(scans[i], result));
+        found.push_back(jsonOf(subject, result));
       else
-        print(scans[i], result);
-      warnIfDoubtful(scans[i], result);
-    } catch (const FileError& error) {
-      if (scans.size() == 1) throw;
+        print(subject, result);
+      warnIfDoubtful(subject, result);
+    } catch (const std::runtime_error& error) {
+      if (all.subjects.size() == 1) throw;
       std::fflush(stdout);
       std::cerr << "gaussmap: " << error.what() << std::endl;
-      if (command.json) all.push_back({{"scan", scans[i].string()}, {"error", error.what()}});
+      if (command.json) found.push_back({{"scan", subject.label()}, {"error", error.what()}});
       ++not_found;
     }
   }
+  warnOfCoordinates(all.scans, map.grid().side(0));
   if (!command.tum.empty() && !trajectory.empty()) writeTum(command.tum, trajectory);
-  if (command.json) printJson(all);
+  if (command.json) printJson(found);
   if (not_found > 0)
-    throw std::runtime_error(std::to_string(not_found) + " of " + std::to_string(scans.size()) +
+    throw std::runtime_error(std::to_string(not_found) + " of " + std::to_string(all.subjects.size()) +
                              (not_found == 1 ? " scans was" : " scans were") + " not registered, see above");
 }
 
@@ -167,7 +199,8 @@ void addRegister(CLI::App& app) {
   Command command(app, "register", kRegisterHelp);
   command
       .texts("inputs", options->inputs,
-             "scans (.pcd files or directories of them) or maps to register; last: the map that defines the frame")
+             "scans (files of any kind that pcd2map reads, or directories) or maps to register; last: the map that "
+             "defines the frame")
       .required()
       .atLeast(2);
   command.numbers("--guess", options->guess, 7, -1e12, 1e12,
@@ -188,7 +221,9 @@ void addRegister(CLI::App& app) {
   addRangeOptions(command, options->input);
   command.threads(options->options.threads);
   command.json(options->json);
-  command.files({"inputs"}, {".pcd", ".pcd.gz", ".gmap"});
+  std::vector<std::string> endings = scanEndings();
+  endings.emplace_back(".gmap");
+  command.files({"inputs"}, endings);
   command.files({"--tum"});
   command.onRun([options] { run(*options); });
 }

@@ -1,28 +1,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "commands/scan_input.h"
 
+#include <algorithm>
 #include <charconv>
 #include <map>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
 
+#include "commands/recordings.h"
 #include "commands/sensor_positions.h"
 #include "common/box.h"
 #include "common/command.h"
 #include "common/report.h"
+#include "io/scans/scan_names.h"
 
 namespace gaussmap::app {
 
+std::vector<std::string> scanEndings() {
+  return {".pcd", ".pcd.gz", ".ply", ".las", ".laz", ".e57",  ".bin", ".xyz",
+          ".pts", ".ptx",    ".csv", ".txt", ".asc", ".mcap", ".db3", ".bag"};
+}
+
 void addScanPaths(Command& command, ScanInput& input) {
-  command.texts("scans", input.paths, "PCD files, or directories of PCD files (in natural order)").required();
-  command.files({"scans"}, {".pcd", ".pcd.gz"});
+  command
+      .texts("scans", input.paths,
+             "files of scans (PCD, PLY, LAS, LAZ, E57, .bin, text, MCAP, db3, bag), or directories of them (in natural "
+             "order)")
+      .required();
+  command.files({"scans"}, scanEndings());
 }
 
 void addPoseOptions(Command& command, ScanInput& input) {
   command.text(
       "--poses", input.poses,
-      "file with the sensor poses in the map frame (TUM, KITTI, CSV ...); default: the VIEWPOINT of each scan");
+      "file with the sensor poses in the map frame (TUM, KITTI, CSV ...); for recordings also tf, or a topic such as "
+      "/odom; default: the poses in the files");
   command
       .text("--pose-format", input.pose_format,
             R"(auto, tum, tum-wxyz, kitti, matrix4, euroc, xyzrpy-deg, xyzrpy-rad, g2o, csv (a header line names the
@@ -45,6 +58,7 @@ void addPoseOptions(Command& command, ScanInput& input) {
             R"(pose of the sensor in the frame that the poses describe: file, or "x y z qx qy qz qw"; default: calib.txt
             beside a KITTI pose file, if there is one; none: no extrinsic)")
       .rare();
+  addFileOptions(command, input.files);
   command.files({"--poses", "--extrinsic"});
 }
 
@@ -121,19 +135,44 @@ Extrinsic extrinsicIn(const std::string& text) {
   return extrinsic;
 }
 
+/// Returns true if options are given that mean something else, or something only, for recordings.
+bool hasRecordingOptions(const ScanInput& input) {
+  const RecordingOptions& recording = input.files.recording;
+  return namesTopic(input.poses) || (input.poses.empty() && (input.max_time_gap || input.skip_without_pose)) ||
+         !recording.topic.empty() || !recording.pose_frame.empty() || !recording.fixed_frame.empty() ||
+         recording.log_times;
+}
+
+/// Throws UsageError for options that have no effect.
+void checkOptions(const ScanInput& input, bool has_recording) {
+  const auto require = [](bool is_met, bool is_given, const char* option, const char* need) {
+    if (is_given && !is_met) throw UsageError(std::string(option) + ": needs " + need);
+  };
+  const bool has_file = !input.poses.empty() && !(has_recording && namesTopic(input.poses));
+  require(has_file, input.pose_format != "auto", "--pose-format", "a file of poses (--poses)");
+  require(has_file, input.match_poses != "auto", "--match-poses", "a file of poses (--poses)");
+  require(has_file, input.interpolate, "--interpolate", "a file of poses (--poses)");
+  require(has_file || has_recording, input.max_time_gap.has_value(), "--max-time-gap", "--poses");
+  require(has_file || has_recording, input.skip_without_pose, "--skip-without-pose", "--poses");
+  const RecordingOptions& recording = input.files.recording;
+  const char* const kRecording = "a recording of ROS among the inputs";
+  require(has_recording, !recording.topic.empty(), "--topic", kRecording);
+  require(has_recording, recording.log_times, "--log-times", kRecording);
+  require(has_recording && !has_file, !recording.fixed_frame.empty(), "--fixed-frame", "poses of a recording");
+  require(has_recording && !has_file, !recording.pose_frame.empty(), "--pose-frame", "poses of a recording");
+}
+
 }  // namespace
 
 FindScansOptions findOptions(const ScanInput& input) {
-  if (input.poses.empty()) {
-    const auto needsPoses = [](const char* option) { throw UsageError(std::string(option) + ": needs --poses"); };
-    if (input.pose_format != "auto") needsPoses("--pose-format");
-    if (input.match_poses != "auto") needsPoses("--match-poses");
-    if (input.max_time_gap) needsPoses("--max-time-gap");
-    if (input.interpolate) needsPoses("--interpolate");
-    if (input.skip_without_pose) needsPoses("--skip-without-pose");
-  }
+  const bool has_recording = hasRecordingOptions(input) && !recordingsIn(input.paths).empty();
+  checkOptions(input, has_recording);
   FindScansOptions options;
-  options.poses = input.poses;
+  options.files = input.files;
+  if (has_recording && namesTopic(input.poses))
+    options.files.recording.poses = input.poses;
+  else
+    options.poses = input.poses;
   setPoseFormat(input.pose_format, options);
   options.matching = {kPoseMatches.at(input.match_poses), input.max_time_gap, input.interpolate};
   options.convention = input.meaning.convention;
@@ -143,15 +182,27 @@ FindScansOptions findOptions(const ScanInput& input) {
   return options;
 }
 
+FoundScans findScans(const ScanInput& input, const FindScansOptions& options) {
+  try {
+    return gaussmap::findScans({input.paths.begin(), input.paths.end()}, options);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(std::string("--") + error.what());
+  }
+}
+
 std::optional<PoseConvention> impossibleConvention(const ScanInput& input) {
   // VIEWPOINT is read as w x y z.
   return input.poses.empty() ? std::optional(PoseConvention::WFirst) : std::nullopt;
 }
 
 FileScans openScans(const ScanInput& input, int threads, const char* follows_rays) {
-  FoundScans found = findScans({input.paths.begin(), input.paths.end()}, findOptions(input));
+  const FindScansOptions options = findOptions(input);
+  FoundScans found = findScans(input, options);
   if (follows_rays) requireSensorPositions(found.scans, follows_rays);
-  if (!input.poses.empty()) note(found.poses);
+  if (!options.poses.empty())
+    note(found.poses);
+  else if (!found.scans.pcd(0))
+    note("poses: " + found.poses);
   for (const std::string& warning : found.warnings) warn(warning);
   const PoseFinding finding = checkMeaning(found, input.meaning, impossibleConvention(input), threads);
   if (!finding.fault.empty()) throw std::runtime_error(finding.fault);
@@ -170,6 +221,26 @@ AccumulateOptions accumulateOptions(const ScanInput& input, double resolution, i
   return options;
 }
 
+std::string coordinateSystemOf(const FileScans& scans) {
+  std::string system, last_path;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    const std::string path = scans.files()[i].path.string();
+    if (path == last_path) continue;
+    last_path = path;
+    const std::string own = scans.coordinateSystem(i);
+    if (own.empty() || own == system) continue;
+    if (system.empty()) {
+      system = own;
+      continue;
+    }
+    warn(path +
+         ": the coordinate reference system differs from that of the files before; the coordinates are used as "
+         "they are, so convert the files to one system if it is not the same");
+    break;
+  }
+  return system;
+}
+
 void warnOfCoordinates(const FileScans& scans, double resolution) {
   for (const std::string& warning : scans.coordinateWarnings(resolution)) warn(warning);
 }
@@ -180,6 +251,24 @@ std::vector<Vector<3>> readPoints(const ScanInput& input, int threads, double re
   warnOfCoordinates(scans, resolution);
   if (points.empty()) throw std::runtime_error(nameOf(scans) + ": no point is usable");
   return points;
+}
+
+std::string shortNameOf(const ScanInfo& scan) {
+  const std::size_t end = std::min(scan.name.find(": "), scan.name.size());
+  return std::filesystem::path(scan.name.substr(0, end)).filename().string() + scan.name.substr(end);
+}
+
+std::vector<std::string> shortNamesOf(const Scans& scans) {
+  std::vector<std::filesystem::path> paths;
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    const ScanInfo scan = scans.info(i);
+    paths.emplace_back(scan.name);
+    names.push_back(shortNameOf(scan));
+  }
+  const bool is_files = std::none_of(names.begin(), names.end(),
+                                     [](const std::string& name) { return name.find(": ") != std::string::npos; });
+  return is_files ? detail::scanNames(paths) : names;
 }
 
 std::string nameOf(const Scans& scans) {

@@ -5,9 +5,12 @@
 #include <map>
 #include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include "commands/commands.h"
+#include "commands/recordings.h"
 #include "commands/scan_input.h"
+#include "commands/topic_table.h"
 #include "common/command.h"
 #include "common/json.h"
 #include "common/progress_bar.h"
@@ -20,8 +23,9 @@ namespace {
 const Help kScansHelp = {
     "Show scans, their poses and warnings, without building a map", "gaussmap scans scans/ --poses poses.txt",
     R"(Reads the scans as pcd2map does, and prints one table: files, kind, points, fields, times, how poses were found and
-matched, the box around the points in the map frame, and all warnings. The exit code is 1 if pcd2map would stop, for
-example because a scan has no pose.)"};
+matched, the box around the points in the map frame, and all warnings. For a recording, a list of its topics comes
+first: type, number of messages, rate, times and frame. The exit code is 1 if pcd2map would stop, for example because
+a scan has no pose, or because a recording has several topics with scans.)"};
 
 struct ScansCommand {
   ScanInput input;
@@ -112,7 +116,7 @@ Table tableOf(const FileScans& scans, const detail::PointLimits& limits) {
 }
 
 std::string timesText(const std::vector<double>& times) {
-  if (times.empty()) return "unknown (no times in the names)";
+  if (times.empty()) return "unknown (no times in the files or their names)";
   std::string text = formatted("%.6f", times.front()) + " .. " + formatted("%.6f", times.back()) + " s";
   if (times.size() > 1)
     text += ", mean interval " +
@@ -131,7 +135,16 @@ std::string boxText(const std::optional<Box<3>>& box) {
   return text + " m";
 }
 
-Json jsonOf(const FoundScans& found, const Table& table) {
+/// "6: a.pcd .. f.pcd", or "178 in drive.bag".
+std::string filesText(const std::vector<FileScan>& files) {
+  std::string text = std::to_string(files.size());
+  if (files.empty()) return text;
+  const std::string first = files.front().path.string(), last = files.back().path.string();
+  if (first == last) return text + (files.size() == 1 ? ": " : " scans in ") + first;
+  return text + ": " + first + " .. " + last;
+}
+
+Json jsonOf(const FoundScans& found, const Table& table, Json recordings) {
   Json scans = Json::array();
   for (std::size_t i = 0; i < found.scans.size(); ++i) {
     const FileScan& scan = found.scans.files()[i];
@@ -143,7 +156,9 @@ Json jsonOf(const FoundScans& found, const Table& table) {
                 {"fields", fieldsText(found.scans, i)},
                 {"translation", vectorJson(scan.pose.translation)},
                 {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
+    if (!scan.name.empty()) one["scan"] = scan.name;
     if (scan.time) one["time"] = *scan.time;
+    if (const std::string system = found.scans.coordinateSystem(i); !system.empty()) one["coordinate_system"] = system;
     scans.push_back(std::move(one));
   }
   Json json = {{"scans", scans},
@@ -158,6 +173,7 @@ Json jsonOf(const FoundScans& found, const Table& table) {
                {"poses", found.poses},
                {"without_pose", found.without_pose},
                {"warnings", found.warnings}};
+  if (!recordings.empty()) json["recordings"] = std::move(recordings);
   if (!table.times.empty()) json["times"] = {table.times.front(), table.times.back()};
   if (table.box) json["box"] = {{"low", vectorJson(table.box->low)}, {"high", vectorJson(table.box->high)}};
   return json;
@@ -169,10 +185,7 @@ void printRow(const char* name, const std::string& value) {
 
 void print(const FoundScans& found, const Table& table, bool each) {
   const std::vector<FileScan>& files = found.scans.files();
-  std::string names = std::to_string(files.size());
-  if (!files.empty()) names += ": " + files.front().path.string();
-  if (files.size() > 1) names += " .. " + files.back().path.string();
-  printRow("files", names);
+  printRow("files", filesText(files));
   printRow("kind", listed(table.kinds));
   std::string points = std::to_string(table.counts.accepted);
   if (table.counts.accepted < table.counts.read)
@@ -194,16 +207,30 @@ void print(const FoundScans& found, const Table& table, bool each) {
     const Eigen::Vector3d& t = files[i].pose.translation;
     std::printf("%10s %18s %10.3f %10.3f %10.3f  %s\n", std::to_string(table.points[i].counts.accepted).c_str(),
                 files[i].time ? formatted("%.6f", *files[i].time).c_str() : "-", t.x(), t.y(), t.z(),
-                files[i].path.string().c_str());
+                found.scans.info(i).name.c_str());
   }
 }
 
 /// Prints the table. Throws std::runtime_error with the reason if pcd2map would stop.
 void run(const ScansCommand& command) {
   // Scans without a pose are listed first. Then the command fails, as pcd2map does.
+  Json recordings = Json::array();
+  for (const std::filesystem::path& recording : recordingsIn(command.input.paths)) {
+    TopicTable topics = topicsOf(recording);
+    recordings.push_back(std::move(topics.json));
+    if (!command.json) std::printf("%s\n", topics.text.c_str());
+  }
+  std::fflush(stdout);
   FindScansOptions options = findOptions(command.input);
   options.skip_without_pose = true;
-  FoundScans found = findScans({command.input.paths.begin(), command.input.paths.end()}, options);
+  FoundScans found = [&] {
+    try {
+      return findScans(command.input, options);
+    } catch (const std::exception&) {
+      if (command.json && !recordings.empty()) printJson({{"recordings", recordings}});
+      throw;
+    }
+  }();
   const PoseFinding finding = checkMeaning(found, command.input.meaning, impossibleConvention(command.input), 0);
   const Table table = tableOf(found.scans, detail::limitsOf(accumulateOptions(command.input, command.resolution, 1)));
   const bool would_stop = !found.without_pose.empty() && !command.input.skip_without_pose;
@@ -213,12 +240,12 @@ void run(const ScansCommand& command) {
   if (!finding.warning.empty()) found.warnings.push_back(finding.warning);
   if (would_stop) {
     const std::size_t missing = found.without_pose.size(), all = found.scans.size() + missing;
-    fault = command.input.poses + ": " + std::to_string(missing) + " of " + std::to_string(all) +
-            (all == 1 ? " scan" : " scans") + (missing == 1 ? " has" : " have") +
+    fault = (options.poses.empty() ? nameOf(found.scans) : command.input.poses) + ": " + std::to_string(missing) +
+            " of " + std::to_string(all) + (all == 1 ? " scan" : " scans") + (missing == 1 ? " has" : " have") +
             " no pose, so pcd2map would stop; use --skip-without-pose to leave such scans out";
   }
   if (command.json)
-    printJson(jsonOf(found, table));
+    printJson(jsonOf(found, table, std::move(recordings)));
   else
     print(found, table, command.each);
   std::fflush(stdout);

@@ -13,12 +13,17 @@
 namespace gaussmap::app {
 using namespace detail;
 
-void requireSensorPositions(const Scans& scans, const char* follower) {
+void requireSensorPositions(const FileScans& scans, const char* follower) {
+  for (std::size_t i = 0; i < scans.size(); ++i)
+    if (!scans.files()[i].has_sensor_position)
+      throw FileError(scans.files()[i].path, std::string("the points are in the map frame, and the file does not say "
+                                                         "where the sensor was. The ") +
+                                                 follower +
+                                                 " follows the rays from the sensor to the points: give the positions "
+                                                 "of the sensor with --poses FILE and --frame map");
   const std::optional<SameView> worst = compareViews(scans);
   if (!worst || !worst->moved()) return;
-  const auto fileOf = [&](std::size_t index) {
-    return std::filesystem::path(scans.info(index).name).filename().string();
-  };
+  const auto fileOf = [&](std::size_t index) { return shortNameOf(scans.info(index)); };
   const Eigen::Vector3d position = scans.info(0).pose.translation;
   std::ostringstream text;
   text << nameOf(scans) << ": all scans have the sensor position (" << position.x() << " " << position.y() << " "

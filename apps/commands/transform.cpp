@@ -41,6 +41,8 @@ void run(const TransformCommand& command) {
   const Eigen::Vector3d& t = given.translation;
   step["transform"] = {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
   if (!command.motion.covariance.empty()) step["pose_covariance"] = command.motion.covariance;
+  if (task.metadata.erase(kCoordinateSystemEntry) > 0)
+    note("the moved map has no coordinate reference system any more");
   task.addStep("transform", step);
   task.save(map);
   task.report(map);

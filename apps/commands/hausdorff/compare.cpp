@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "commands/hausdorff/hausdorff.h"
+#include "commands/recordings.h"
 #include "evaluation/error_cloud.h"
 #include "gaussmap/io/mesh/ply.h"
 #include "gaussmap/io/pcd/map_pcd.h"
@@ -45,6 +46,7 @@ std::vector<Vector<3>> readSubject(const HausdorffCommand& command) {
   ScanInput cloud = command.reference;  // copies --frame, the ranges and --crop
   cloud.paths = {command.subject};
   cloud.poses.clear();
+  if (recordingsIn(cloud.paths).empty()) cloud.files.recording = {};
   return readPoints(cloud, command.samples.threads);
 }
 

@@ -8,7 +8,6 @@
 #include "common/progress_bar.h"
 #include "common/report.h"
 #include "io/pcd/removed_pcd.h"
-#include "io/scans/scan_names.h"
 
 namespace gaussmap::app {
 using namespace detail;
@@ -45,12 +44,6 @@ class StatisticsTable {
   std::ostringstream text_;
 };
 
-std::vector<std::string> namesOf(const Scans& scans) {
-  std::vector<std::filesystem::path> paths;
-  for (std::size_t i = 0; i < scans.size(); ++i) paths.emplace_back(scans.info(i).name);
-  return scanNames(paths);
-}
-
 }  // namespace
 
 WrittenMap buildOnline(const Pcd2mapOptions& options, const Scans& scans, const AccumulateOptions& reading,
@@ -63,7 +56,7 @@ WrittenMap buildOnline(const Pcd2mapOptions& options, const Scans& scans, const 
 
   PointCounts counts;
   std::size_t deleted = 0;  // clusters of all scales
-  const std::vector<std::string> names = namesOf(scans);
+  const std::vector<std::string> names = shortNamesOf(scans);
   StatisticsTable table(options.map.scales);
   ProgressBar bar;
   for (std::size_t i = 0; i < scans.size(); ++i) {

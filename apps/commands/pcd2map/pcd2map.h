@@ -38,7 +38,8 @@ WrittenMap buildInMemory(const Pcd2mapOptions& options, const Scans& scans, cons
                          MapTask& task);
 
 /// Builds the map tile by tile, with a temporary file. The map is the same, but without error curves.
-WrittenMap buildWithinMemory(const Pcd2mapOptions& options, const Scans& scans, const AccumulateOptions& reading);
+WrittenMap buildWithinMemory(const Pcd2mapOptions& options, const Scans& scans, const AccumulateOptions& reading,
+                             const MapTask& task);
 /// Throws UsageError if --max-memory is combined with options that need the whole map in memory.
 void checkMemory(const Pcd2mapOptions& options);
 

@@ -121,7 +121,8 @@ void warnOfRepeats(const MapUpdate& update, const std::string& map) {
 void updateFromScans(const Pcd2mapOptions& options) {
   const double start = now();
   const MapOptions map = growingMapOptions<3>(options.update);
-  const Recorded recorded = recordedIn(loadMetadata(options.update));
+  const MapMetadata before = loadMetadata(options.update);
+  const Recorded recorded = recordedIn(before);
   const FileScans scans = openScans(options.input, options.budget.refine.threads);
   noteDroppedFields(scans);
   const AccumulatedScans accumulated = accumulate(options, scans, map.resolution);
@@ -135,6 +136,11 @@ void updateFromScans(const Pcd2mapOptions& options) {
   updating.budget = options.update_budget ? options.update_budget : recorded.budget;
   updating.merge_cost = mergeCost(merging);
   updating.threads = options.budget.refine.threads;
+  const std::string system = coordinateSystemOf(scans);
+  if (const auto of_map = before.find(kCoordinateSystemEntry);
+      !system.empty() && of_map != before.end() && of_map->second != system)
+    warn(nameOf(scans) + ": the coordinate reference system differs from that of " + options.update +
+         ", which the map keeps; convert the scans if the systems are not the same");
   Json step = historyOf(scans, accumulated.counts);
   step["update"] = true;
   step["method"] = "agglomerate";
@@ -143,6 +149,7 @@ void updateFromScans(const Pcd2mapOptions& options) {
   const MapUpdate update = updateMap<3>(options.update, accumulated.moments, updating, [&](MapMetadata& metadata) {
     metadata.erase("error_curves");  // they describe the old map
     addHistory(metadata, step);
+    if (!system.empty()) metadata.emplace(kCoordinateSystemEntry, system);
   });
   warnOfRepeats(update, options.update);
   report(options, scans, accumulated.counts, update, start);

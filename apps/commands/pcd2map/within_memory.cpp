@@ -19,7 +19,8 @@ void checkMemory(const Pcd2mapOptions& options) {
                      " bytes are needed");
 }
 
-WrittenMap buildWithinMemory(const Pcd2mapOptions& options, const Scans& scans, const AccumulateOptions& reading) {
+WrittenMap buildWithinMemory(const Pcd2mapOptions& options, const Scans& scans, const AccumulateOptions& reading,
+                             const MapTask& task) {
   BuildMapFileOptions building;
   building.max_memory = amountOf("--max-memory", options.max_memory, true);
   building.refine = options.budget.refine;
@@ -28,7 +29,7 @@ WrittenMap buildWithinMemory(const Pcd2mapOptions& options, const Scans& scans, 
   building.save = {options.output.force, SaveOptions().compression, options.budget.refine.threads};
   const auto metadataOf = [&](const PointCounts& counts) {
     requirePoints(counts, scans);
-    MapMetadata metadata;
+    MapMetadata metadata = task.metadata;
     // The same step as that of refineWithin(), so that the files are identical.
     const std::string details = detailsOf(options.budget, historyOf(scans, counts));
     recordStep(metadata, refineStep(building.budget, building.refine, details));

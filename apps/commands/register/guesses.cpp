@@ -7,46 +7,28 @@
 
 #include "common/command.h"
 #include "core/same_pose.h"
-#include "gaussmap/io/pcd/map_pcd.h"
-#include "gaussmap/io/pcd/pcd_reader.h"
 #include "io/scans/name_numbers.h"
 #include "io/scans/scan_names.h"
 
 namespace gaussmap::app {
 namespace {
 
-/// Returns the VIEWPOINT of a scan. If there are `several` scans, returns nullopt for a file that cannot be opened: the
-/// command reports it when it reads its points, and registers the others.
-std::optional<Pose> viewpointOf(const std::filesystem::path& scan, bool several) {
-  try {
-    return PcdReader(scan).header().viewpoint;
-  } catch (const FileError&) {
-    if (!several) throw;
-    return std::nullopt;
-  }
-}
-
-/// Returns the usable VIEWPOINTs. A map in place of a scan has none: it starts at its present place.
-std::vector<std::optional<Pose>> viewpointsOf(const std::vector<std::filesystem::path>& scans, bool guessed) {
-  std::vector<std::optional<Pose>> poses(scans.size());
-  for (std::size_t i = 0; i < scans.size(); ++i) {
-    if (isMap(scans[i])) {
-      poses[i] = Pose();
-      continue;
-    }
-    const std::optional<Pose> viewpoint = viewpointOf(scans[i], scans.size() > 1);
-    if (!viewpoint) continue;
-    const std::string fault = poseFault(*viewpoint);
-    if (fault.empty()) poses[i] = normalised(*viewpoint);
+/// Returns the usable poses of the files. A map in place of a scan starts at its present place.
+std::vector<std::optional<Pose>> posesInFiles(const std::vector<Subject>& subjects, bool guessed) {
+  std::vector<std::optional<Pose>> poses(subjects.size());
+  for (std::size_t i = 0; i < subjects.size(); ++i) {
+    if (!subjects[i].pose) continue;
+    const std::string fault = poseFault(*subjects[i].pose);
+    if (fault.empty()) poses[i] = normalised(*subjects[i].pose);
     if (i == 0 && !guessed && !fault.empty())
-      throw FileError(scans[i], "its VIEWPOINT cannot be the first guess: " + fault + "; use --guess");
+      throw FileError(subjects[i].path, "its pose cannot be the first guess: " + fault + "; use --guess");
   }
   return poses;
 }
 
 /// Forgets poses that nobody set: the identity of several scans, or one pose of all scans that have a pose. The first
 /// of them keeps the latter, because the search has to start somewhere.
-void dropUnset(std::vector<std::optional<Pose>>& poses, const std::vector<std::filesystem::path>& scans) {
+void dropUnset(std::vector<std::optional<Pose>>& poses, const std::vector<Subject>& subjects) {
   if (poses.size() < 2) return;
   std::size_t at_identity = 0, first = poses.size();
   bool all_same = true;
@@ -57,31 +39,37 @@ void dropUnset(std::vector<std::optional<Pose>>& poses, const std::vector<std::f
     all_same = all_same && detail::samePose(*poses[i], *poses[first]);
   }
   for (std::size_t i = 0; i < poses.size(); ++i)
-    if (!isMap(scans[i]) && poses[i] &&
+    if (!subjects[i].is_map && poses[i] &&
         ((all_same && i > first) || (!all_same && at_identity > 1 && detail::samePose(*poses[i], Pose()))))
       poses[i].reset();
 }
 
 }  // namespace
 
-RegisterGuesses::RegisterGuesses(const std::vector<std::filesystem::path>& scans, const FindScansOptions& options,
+RegisterGuesses::RegisterGuesses(const std::vector<Subject>& subjects, const FindScansOptions& options,
                                  const std::vector<double>& guess)
-    : scans_(scans) {
+    : subjects_(subjects) {
   if (!guess.empty()) {
     const Pose given = {{guess[0], guess[1], guess[2]}, Pose::Rotation(guess[6], guess[3], guess[4], guess[5])};
     if (const std::string fault = poseFault(given); !fault.empty()) throw UsageError("--guess: " + fault);
     guess_ = normalised(given);
     own_first_ = false;
   }
-  own_.resize(scans.size());
+  own_.resize(subjects.size());
   if (options.poses.empty()) {
-    own_ = viewpointsOf(scans, guess_.has_value());
-    dropUnset(own_, scans);
+    own_ = posesInFiles(subjects, guess_.has_value());
+    dropUnset(own_, subjects);
   }
   std::vector<detail::ScanPose> poses;
-  for (std::size_t i = 0; i < scans.size(); ++i) poses.push_back({scans[i], own_[i].value_or(Pose())});
+  for (std::size_t i = 0; i < subjects.size(); ++i) {
+    detail::ScanPose& scan = poses.emplace_back();
+    scan.path = subjects[i].path;
+    scan.name = subjects[i].name;
+    scan.time = subjects[i].time;
+    scan.pose = own_[i].value_or(Pose());
+  }
   assigned_ = assignPoses(poses, options);
-  for (std::size_t i = 0; i < scans.size(); ++i)
+  for (std::size_t i = 0; i < subjects.size(); ++i)
     if (own_[i] || (!options.poses.empty() && !assigned_.left_out[i])) own_[i] = poses[i].pose;
 }
 
@@ -89,10 +77,12 @@ std::vector<double> RegisterGuesses::times() const {
   std::vector<double> times;
   for (const std::optional<double>& time : assigned_.times)
     if (time) times.push_back(*time);
-  if (std::set<double>(times.begin(), times.end()).size() == scans_.size()) return times;
-  const std::vector<std::uint64_t> indices = detail::numbersIn(detail::scanNames(scans_)).indices;
+  if (std::set<double>(times.begin(), times.end()).size() == subjects_.size()) return times;
+  std::vector<std::filesystem::path> paths;
+  for (const Subject& subject : subjects_) paths.push_back(subject.path);
+  const std::vector<std::uint64_t> indices = detail::numbersIn(detail::scanNames(paths)).indices;
   times.clear();
-  for (std::size_t i = 0; i < scans_.size(); ++i) times.push_back(indices.empty() ? double(i) : double(indices[i]));
+  for (std::size_t i = 0; i < paths.size(); ++i) times.push_back(indices.empty() ? double(i) : double(indices[i]));
   return times;
 }
 

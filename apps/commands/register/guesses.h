@@ -2,11 +2,11 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "commands/register/subjects.h"
 #include "gaussmap/core/pose.h"
 #include "io/scans/assign_poses.h"
 
@@ -14,14 +14,14 @@ namespace gaussmap::app {
 
 /// The poses at which the search for each scan starts.
 ///
-/// Each scan has an own pose, from a pose file or its VIEWPOINT. VIEWPOINTs that have a fault, or that several scans
-/// share, are not poses of the scans. If there are several scans, a file that cannot be opened has no own pose.
+/// A scan can have an own pose, from a pose file or its own file. Poses in files that have a fault, or that several
+/// scans share, are not poses of the scans.
 class RegisterGuesses {
  public:
   /// `options`: how own poses are found. `guess`: x y z qx qy qz qw of the first scan, or empty. Throws UsageError if
-  /// `guess` has a fault; FileError if the pose file does not fit the scans, if the VIEWPOINT of the first scan has a
-  /// fault and there is no other guess, or if the only scan cannot be opened.
-  RegisterGuesses(const std::vector<std::filesystem::path>& scans, const FindScansOptions& options,
+  /// `guess` has a fault; FileError if the pose file does not fit the scans, or if the pose of the first scan has a
+  /// fault and there is no other guess.
+  RegisterGuesses(const std::vector<Subject>& subjects, const FindScansOptions& options,
                   const std::vector<double>& guess);
 
   /// Returns the guesses for scan `i`, the best one first. There is at least one.
@@ -39,7 +39,7 @@ class RegisterGuesses {
   std::vector<double> times() const;
 
  private:
-  std::vector<std::filesystem::path> scans_;
+  std::vector<Subject> subjects_;
   detail::AssignedPoses assigned_;
   std::vector<std::optional<Pose>> own_;  // per scan
   std::optional<Pose> guess_;             // of the first scan

@@ -9,7 +9,6 @@
 
 #include "gaussmap/io/logs/carmen_log.h"
 #include "gaussmap/segments/laser_scan.h"
-#include "io/scans/scan_names.h"
 
 namespace gaussmap::app {
 namespace {
@@ -53,7 +52,7 @@ LaserScans readPcds(const LaserInput& input) {
   for (const FileScan& scan : scans.files()) {
     all.files.push_back(scan.path);
   }
-  all.names = detail::scanNames(all.files);
+  all.names = shortNamesOf(scans);
   return all;
 }
 
@@ -62,7 +61,8 @@ LaserScans readPcds(const LaserInput& input) {
 void addLaserOptions(Command& command, LaserInput& input) {
   command
       .texts("scans", input.scans.paths,
-             "CARMEN logs (.log, .log.gz), or PCD scans of a planar laser, or directories of them")
+             "CARMEN logs (.log, .log.gz), or scans of a planar laser (PCD, recordings of ROS ...), or directories of "
+             "them")
       .required();
   command.files({"scans"}, {".log", ".log.gz", ".pcd", ".pcd.gz"});
   addScanOptions(command, input.scans);

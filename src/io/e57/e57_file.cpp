@@ -73,6 +73,8 @@ class E57File : public ScanFile {
   std::unique_ptr<ScanReader> open(std::size_t scan) const override {
     return std::make_unique<E57ScanReader>(contents_, scan);
   }
+  std::string poseSource() const override { return with_pose_ > 0 ? "E57 pose of each scan" : ""; }
+  bool inMapFrame() const override { return with_pose_ == 0; }  // by the standard
   std::string coordinateSystem() const override { return contents_->description.coordinate_system; }
   std::vector<std::string> warnings() const override;
 

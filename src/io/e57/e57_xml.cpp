@@ -32,8 +32,11 @@ std::string onOneLine(std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto byte = static_cast<unsigned char>(text[i]);
     const bool starts_character = (byte & 0xC0u) != 0x80u;
-    if (line.size() >= kLongest && starts_character) return line + "...";
-    if (line.size() >= kLongest + 4) return line;  // not UTF-8
+    if (line.size() >= kLongest && starts_character) {
+      line += "...";
+      break;
+    }
+    if (line.size() >= kLongest + 4) break;  // not UTF-8
     const bool is_c1_control = byte == 0xC2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xA0;
     if (is_c1_control) ++i;
     line += byte < 0x20 || byte == 0x7F || is_c1_control ? ' ' : text[i];

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gaussmap/core/error.h"
+#include "gaussmap/version.h"
 
 namespace gaussmap::detail {
 
@@ -56,9 +57,9 @@ class MessageFile {
 
 /// Opens a recording: a file, or a directory with metadata.yaml, whose files are read as one recording. The kind
 /// follows from the content. Throws FileError.
-std::unique_ptr<MessageFile> openMessageFile(const std::filesystem::path& path);
+GAUSSMAP_API std::unique_ptr<MessageFile> openMessageFile(const std::filesystem::path& path);
 
 /// Returns true if the file or directory looks like a recording. Reads a few bytes.
-bool isMessageFile(const std::filesystem::path& path);
+GAUSSMAP_API bool isMessageFile(const std::filesystem::path& path);
 
 }  // namespace gaussmap::detail

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,7 +11,6 @@
 
 #include "gaussmap/core/error.h"
 #include "gaussmap/core/scans.h"
-#include "gaussmap/io/pcd/pcd_reader.h"
 
 namespace gaussmap::detail {
 
@@ -20,7 +20,8 @@ struct FileScanInfo {
   std::size_t points = 0;                                       ///< including points without a return
   std::optional<Pose> pose = std::nullopt;                      ///< sensor frame to map frame; std::nullopt: unknown
   std::optional<std::chrono::nanoseconds> time = std::nullopt;  ///< exact, since the zero of the file's clock
-  double position_step = 0.0;  ///< step in which the position of the pose is written as text [m]; 0: unknown
+  double position_step = 0.0;     ///< step in which the position of the pose is written as text [m]; 0: unknown
+  std::uint64_t fingerprint = 0;  ///< differs between files with different points; 0: unknown
 };
 
 /// An open file with one or more scans. The implementations read one kind of file each. All functions are thread-safe.
@@ -45,14 +46,16 @@ class ScanFile {
   /// those of PCL if there is one: "intensity", "ring", "rgb", "label", "time" [s].
   virtual std::unique_ptr<ScanReader> open(std::size_t scan) const = 0;
 
-  /// Returns where the poses of the scans come from, for messages; empty if the file has no poses.
+  /// Returns where the poses of the scans come from, for messages; empty if no scan has a pose.
   virtual std::string poseSource() const { return ""; }
-  /// Returns true if a reader keeps the points in memory, because the file must be parsed or decompressed.
-  virtual bool keepsPoints() const { return true; }
-  /// Returns the reader of a PCD file; std::nullopt for other kinds.
-  virtual std::optional<PcdReader> pcd() const { return std::nullopt; }
-  /// Returns true if the points are in the map frame by the definition of the format, as in LAS.
+  /// Returns why scans have no pose, and what to do, for messages; empty if all have one, or if files of this kind have
+  /// no poses.
+  virtual std::string missingPoses() const { return ""; }
+  /// Returns true if the points are in the map frame, and the file does not say where the sensor was, as in LAS.
   virtual bool inMapFrame() const { return false; }
+  /// Returns the memory that a reader of the scan takes after the points were read [bytes], about; 0 if it takes none
+  /// because it reads the points from the file each time.
+  virtual std::size_t memoryOf(std::size_t scan) const { return 3 * sizeof(double) * info(scan).points; }
   /// Returns the coordinate reference system as text (WKT), or an empty string.
   virtual std::string coordinateSystem() const { return ""; }
   /// Returns warnings about the file, one or two sentences each, without the path.

@@ -84,9 +84,10 @@ class PoseAssigner {
     std::vector<TopicGroup> known;
     for (const auto& topics : {odometry, others})
       for (const BagPoseTopic* topic : topics) known.push_back(topic->topic);
-    std::string& text = assigned_.description;
+    std::string& text = assigned_.missing;
     if (!known.empty()) {
-      text = "no poses: choose the topic with the poses of the sensor: " + listTopics(known);
+      text = "no poses: choose the topic with the poses of the sensor: " + listTopics(known) +
+             ", for example --poses " + shown(known.front().name);
       return;
     }
     if (chain && content_.scans.size() == 1 && fixed != frame()) return fromTransforms();
@@ -99,8 +100,8 @@ class PoseAssigner {
       text += "no transform in tf has the frame " + shown(frame()) + " (the frames are " + content_.tree.frames() + ")";
     else
       text += "tf does not give the pose of " + shown(frame()) + (reason.empty() ? "" : ": " + reason);
-    text += "; give a file of poses";
-    if (chain && fixed != frame()) text += ", or ask for the poses of tf if the sensor did not move";
+    text += "; give a file of poses with --poses FILE";
+    if (chain && fixed != frame()) text += ", or --poses tf if the sensor did not move";
   }
 
   void fromTransforms() {
@@ -113,8 +114,9 @@ class PoseAssigner {
     const std::optional<TransformChain> chain =
         fixed.empty() ? std::nullopt : content_.tree.chain(fixed, frame(), reason);
     if (!chain) throw FileError(path_, "tf gives no poses for " + shown(content_.scan_topic.name) + ": " + reason);
-    assigned_.description = "poses from tf: " + shown(frame()) + " in " + shown(fixed);
-    if (chain->steps.empty())
+    assigned_.source = "tf: " + shown(frame()) + " in " + shown(fixed);
+    assigned_.in_fixed_frame = chain->steps.empty();
+    if (assigned_.in_fixed_frame)
       warn("the points of " + shown(content_.scan_topic.name) + " are in the fixed frame " + shown(fixed) +
            ", so they are not moved, and the positions of the sensor are unknown");
     else if (!chain->moves && content_.scans.size() > 1)
@@ -133,9 +135,10 @@ class PoseAssigner {
   void fromTopic(const BagPoseTopic& topic) {
     const std::string name = shown(topic.topic.name);
     const std::string child = options_.pose_frame.empty() ? topic.child : frameName(options_.pose_frame);
-    assigned_.description = "poses from " + name + " (" + topic.topic.type + ")";
+    assigned_.source = name + " (" + topic.topic.type + ")";
     if (frame() == topic.parent && child != frame()) {
-      assigned_.description += ": the points are in its frame " + shown(topic.parent);
+      assigned_.source += ": the points are in its frame " + shown(topic.parent);
+      assigned_.in_fixed_frame = true;
       warn("the points of " + shown(content_.scan_topic.name) + " are in the frame " + shown(topic.parent) +
            " of the poses of " + name + ", so they are not moved, and the positions of the sensor are unknown");
       return fill([](const BagScan&, std::string&) { return Pose(); });
@@ -154,9 +157,9 @@ class PoseAssigner {
     const std::optional<TransformChain> to_fixed = content_.tree.chain(fixed, topic.parent, reason);
     if (!to_fixed)
       throw FileError(path_, "the poses of " + name + " are in the frame " + shown(topic.parent) + ": " + reason);
-    assigned_.description += ": " + shown(child.empty() ? frame() : child) + " in " + shown(fixed);
+    assigned_.source += ": " + shown(child.empty() ? frame() : child) + " in " + shown(fixed);
     if (!child.empty() && source == frame() && child != frame())
-      assigned_.description += ", then " + shown(child) + " -> " + shown(frame()) + " of tf";
+      assigned_.source += ", then " + shown(child) + " -> " + shown(frame()) + " of tf";
     const PoseTimeLimits limits = topicLimits();
     const PoseOfScan to_child = child.empty() || source != frame() ? PoseOfScan() : withChains(child);
     fill([this, &topic, limits, to_child, to_fixed](const BagScan& scan, std::string& why) -> std::optional<Pose> {
@@ -216,9 +219,13 @@ class PoseAssigner {
       if (!assigned_.poses[i] && missing++ == 0)
         first = shown(content_.scan_topic.name) + " " + stampText(content_.scans[i].time) + ": " + reason;
     }
-    if (missing > 0)
-      warn(std::to_string(missing) + " of " + std::to_string(content_.scans.size()) + " scans have no pose, first " +
-           first);
+    if (missing == 0) return;
+    const std::size_t all = content_.scans.size();
+    assigned_.missing = std::to_string(missing) + " of " + std::to_string(all) +
+                        (missing == 1 ? " scan has" : " scans have") + " no pose, first " + first + "; " +
+                        (missing < all ? "use --skip-without-pose to leave such scans out, " : "use ") +
+                        "--max-time-gap to allow more time between scans and poses, or --poses FILE";
+    if (missing == all) assigned_.source.clear();
   }
 
   const std::filesystem::path& path_;

@@ -14,7 +14,9 @@ namespace gaussmap::detail {
 /// The poses of the scans of a recording.
 struct AssignedBagPoses {
   std::vector<std::optional<Pose>> poses;  ///< one per scan
-  std::string description;                 ///< as BagScans::poseDescription()
+  std::string source;                      ///< "tf: lidar in map"; empty: no scan has a pose
+  std::string missing;                     ///< why scans have no pose, and what to do; empty: all have one
+  bool in_fixed_frame = false;             ///< the points are in the fixed frame already
   std::vector<std::string> warnings;
 };
 

@@ -11,7 +11,7 @@
 namespace gaussmap::detail {
 namespace {
 
-class OpenBagScans : public BagScans {
+class OpenBagScans : public ScanFile {
  public:
   OpenBagScans(std::unique_ptr<MessageFile> file, std::filesystem::path path, BagContent content,
                AssignedBagPoses assigned)
@@ -37,8 +37,9 @@ class OpenBagScans : public BagScans {
                     originOf(path_, *file_, place));
   }
   std::vector<std::string> warnings() const override { return warnings_; }
-  const std::string& topic() const override { return topic_.name; }
-  const std::string& poseDescription() const override { return assigned_.description; }
+  std::string poseSource() const override { return assigned_.source; }
+  std::string missingPoses() const override { return assigned_.missing; }
+  bool inMapFrame() const override { return assigned_.in_fixed_frame; }
 
  private:
   std::unique_ptr<MessageFile> file_;
@@ -51,7 +52,7 @@ class OpenBagScans : public BagScans {
 
 }  // namespace
 
-std::unique_ptr<BagScans> openBagScans(std::unique_ptr<MessageFile> file, const std::filesystem::path& path,
+std::unique_ptr<ScanFile> openBagScans(std::unique_ptr<MessageFile> file, const std::filesystem::path& path,
                                        const BagOptions& options) {
   BagContent content = readBagContent(*file, path, options);
   AssignedBagPoses assigned = assignBagPoses(path, content, options);

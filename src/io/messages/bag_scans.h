@@ -30,15 +30,6 @@ struct BagOptions {
   bool log_times = false;                   ///< use the times of recording instead of those in the headers
 };
 
-/// The scans of a recording.
-class BagScans : public ScanFile {
- public:
-  /// Returns the name of the topic with the scans.
-  virtual const std::string& topic() const = 0;
-  /// Returns where the poses come from: "poses from tf: lidar in map"; or why there are none, and what to do.
-  virtual const std::string& poseDescription() const = 0;
-};
-
 /// Opens the scans of a recording. Reads all messages of the topic once, and those with poses; keeps no points.
 ///
 /// The time of a scan is header.stamp, or the time of recording if the stamp is zero. Its name is the topic and this
@@ -54,13 +45,14 @@ class BagScans : public ScanFile {
 ///   frame comes from tf, if there is one.
 /// - If the points are in the fixed frame already, the pose is the identity.
 ///
-/// A scan without a pose has none in its info(); the warnings give their number and the reason for the first one.
+/// A scan without a pose has none in its info(); missingPoses() gives their number and the reason for the first one, or
+/// says why the recording has no poses.
 ///
 /// Throws FileError in these cases:
 /// - The topic of the scans or of the poses is missing, of a wrong type, or not clear. The message lists the topics.
 /// - The poses must come from tf, but no transforms connect the frames. The message lists the frames.
 /// - A message is damaged.
-std::unique_ptr<BagScans> openBagScans(std::unique_ptr<MessageFile> file, const std::filesystem::path& path,
+std::unique_ptr<ScanFile> openBagScans(std::unique_ptr<MessageFile> file, const std::filesystem::path& path,
                                        const BagOptions& options = {});
 
 }  // namespace gaussmap::detail

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "gaussmap/version.h"
 #include "io/formats/message_file.h"
 #include "io/messages/wire_reader.h"
 
@@ -57,6 +58,6 @@ struct BagSummary {
 };
 
 /// Reads the index and the first message of each topic that has a header.
-BagSummary bagSummary(const MessageFile& file, const std::filesystem::path& path);
+GAUSSMAP_API BagSummary bagSummary(const MessageFile& file, const std::filesystem::path& path);
 
 }  // namespace gaussmap::detail

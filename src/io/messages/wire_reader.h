@@ -10,15 +10,16 @@
 #include <string_view>
 
 #include "gaussmap/core/error.h"
+#include "gaussmap/version.h"
 #include "io/formats/message_file.h"
 
 namespace gaussmap::detail {
 
 /// Returns a time with all its digits: "1700000000.100000000".
-std::string stampText(std::chrono::nanoseconds time);
+GAUSSMAP_API std::string stampText(std::chrono::nanoseconds time);
 
 /// Returns the name of a topic or a frame for a message: unprintable bytes as \\xNN, shortened.
-std::string shown(std::string_view name);
+GAUSSMAP_API std::string shown(std::string_view name);
 
 /// Where a message comes from, for errors.
 struct MessageOrigin {

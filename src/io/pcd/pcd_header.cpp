@@ -14,6 +14,7 @@ namespace {
 enum Keyword { kVersion, kFields, kSize, kType, kCount, kWidth, kHeight, kViewpoint, kPoints, kData, kKeywords };
 constexpr std::array<std::string_view, kKeywords> kNames = {"VERSION", "FIELDS", "SIZE",      "TYPE",   "COUNT",
                                                             "WIDTH",   "HEIGHT", "VIEWPOINT", "POINTS", "DATA"};
+constexpr std::string_view kOldFields = "COLUMNS";  // the name of FIELDS before version 0.5
 // No header needs this much. The limit avoids a search through a large file that is not a PCD file.
 constexpr std::size_t kLongestHeader = std::size_t{1} << 20;
 
@@ -91,7 +92,7 @@ class HeaderParser {
   }
 
   Keyword keywordOf(std::string_view word, std::size_t line) const {
-    if (word == "COLUMNS") return kFields;  // the name of FIELDS before version 0.5
+    if (word == kOldFields) return kFields;
     const auto found = std::find(kNames.begin(), kNames.end(), word);
     if (found == kNames.end())
       fail(line, quote(word) + " does not belong in a PCD header (VERSION, FIELDS, SIZE ...): is this a PCD file?");
@@ -278,6 +279,17 @@ class HeaderParser {
 };
 
 }  // namespace
+
+bool isPcd(std::string_view start) {
+  constexpr std::string_view kComment = "# .PCD";
+  while (!start.empty()) {
+    if (start.substr(0, kComment.size()) == kComment) return true;
+    const std::vector<std::string_view> words = splitWords(takeLine(start));
+    if (words.empty() || words.front().front() == '#') continue;
+    return words.front() == kOldFields || std::find(kNames.begin(), kNames.end(), words.front()) != kNames.end();
+  }
+  return false;
+}
 
 PcdHeader parsePcdHeader(const std::filesystem::path& path, std::string_view bytes) {
   return HeaderParser(path, bytes).parse();

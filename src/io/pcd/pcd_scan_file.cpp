@@ -49,36 +49,32 @@ class PcdScanReader : public ScanReader {
   PcdReader reader_;
 };
 
-class PcdScanFile : public ScanFile {
- public:
-  explicit PcdScanFile(PcdReader reader) : reader_(std::move(reader)) {}
-
-  std::string kind() const override {
-    const PcdHeader& header = reader_.header();
-    const char* const encoding = header.encoding == PcdEncoding::Ascii    ? "ascii"
-                                 : header.encoding == PcdEncoding::Binary ? "binary"
-                                                                          : "binary_compressed";
-    return std::string("PCD ") + encoding + (header.height > 1 ? ", organised" : "");
-  }
-  std::size_t size() const override { return 1; }
-  FileScanInfo info(std::size_t) const override {
-    const PcdHeader& header = reader_.header();
-    return {"", reader_.size(), header.viewpoint, std::nullopt, header.viewpoint_step};
-  }
-  std::unique_ptr<ScanReader> open(std::size_t) const override {
-    return std::make_unique<PcdScanReader>(reader_.sameFile());
-  }
-  std::string poseSource() const override { return "VIEWPOINT of each scan"; }
-  bool keepsPoints() const override { return reader_.header().encoding != PcdEncoding::Binary || reader_.isGzip(); }
-  std::optional<PcdReader> pcd() const override { return reader_.sameFile(); }
-
- private:
-  PcdReader reader_;
-};
-
 }  // namespace
 
-std::unique_ptr<ScanFile> openPcd(const std::filesystem::path& path) {
+std::string PcdScanFile::kind() const {
+  const PcdHeader& header = reader_.header();
+  const char* const encoding = header.encoding == PcdEncoding::Ascii    ? "ascii"
+                               : header.encoding == PcdEncoding::Binary ? "binary"
+                                                                        : "binary_compressed";
+  return std::string("PCD ") + encoding + (header.height > 1 ? ", organised" : "");
+}
+
+FileScanInfo PcdScanFile::info(std::size_t) const {
+  const PcdHeader& header = reader_.header();
+  return {"", reader_.size(), header.viewpoint, std::nullopt, header.viewpoint_step, reader_.fingerprint()};
+}
+
+std::unique_ptr<ScanReader> PcdScanFile::open(std::size_t) const {
+  return std::make_unique<PcdScanReader>(reader());
+}
+
+std::size_t PcdScanFile::memoryOf(std::size_t) const {
+  const PcdHeader& header = reader_.header();
+  if (header.encoding == PcdEncoding::Binary && !reader_.isGzip()) return 0;
+  return std::max(3 * sizeof(double), header.record_size) * header.points;  // at most
+}
+
+std::unique_ptr<PcdScanFile> openPcd(const std::filesystem::path& path) {
   PcdReader reader(path);
   if (reader.header().find("covariance") != nullptr && reader.header().find("cell_side") != nullptr)
     throw FileError(path,

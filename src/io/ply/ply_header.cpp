@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "gaussmap/core/error.h"
+#include "io/files/mapped_file.h"
 #include "io/files/text.h"
 
 namespace gaussmap::detail {
@@ -146,6 +147,14 @@ std::size_t PlyElement::minSize() const {
 
 PlyHeader parsePlyHeader(const std::filesystem::path& path, std::string_view bytes) {
   return HeaderParser(path, bytes).parse();
+}
+
+bool isPlyMesh(const std::filesystem::path& path) {
+  const MappedFile file(path);
+  if (file.bytes().substr(0, 3) != "ply") return false;
+  const PlyHeader header = parsePlyHeader(path, file.bytes());
+  return std::any_of(header.elements.begin(), header.elements.end(),
+                     [](const PlyElement& element) { return element.name == "face" && element.count > 0; });
 }
 
 }  // namespace gaussmap::detail

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "gaussmap/version.h"
+
 namespace gaussmap::detail {
 
 enum class PlyType : std::uint8_t { Int8, UInt8, Int16, UInt16, Int32, UInt32, Float32, Float64 };
@@ -46,5 +48,9 @@ struct PlyHeader {
 
 /// Reads the header at the start of a file. Throws FileError with the line that is wrong.
 PlyHeader parsePlyHeader(const std::filesystem::path& path, std::string_view bytes);
+
+/// Returns true if a file is a PLY file with faces, so a mesh and not a cloud. Throws FileError if the file cannot be
+/// opened.
+GAUSSMAP_API bool isPlyMesh(const std::filesystem::path& path);
 
 }  // namespace gaussmap::detail

@@ -115,29 +115,40 @@ void readPoses(std::vector<ScanPose>& scans, const std::vector<ScanKey>& keys, c
     assigned.without_pose.push_back(scans[missing.scan].label() + ": " + missing.reason);
   }
   for (std::size_t i = 0; i < scans.size(); ++i)
-    if (matched.poses[i]) scans[i].pose = *matched.poses[i], scans[i].position_step = 0.0;
+    if (matched.poses[i]) {
+      scans[i].pose = *matched.poses[i];
+      scans[i].position_step = 0.0;
+      scans[i].in_map_frame = false;
+    }
   if (!extrinsic) extrinsic = calibrationBeside(file, assigned.warnings);
 }
 
-/// Takes the poses that the files have. Throws FileError if a file has poses, but not of all its scans.
-void posesOfFiles(const std::vector<ScanPose>& scans, bool skip_without_pose, AssignedPoses& assigned) {
-  std::vector<std::string> sources;
+/// Adds a text if it is not among the others.
+void addOnce(const std::string& text, std::vector<std::string>& texts) {
+  if (!text.empty() && std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
+}
+
+/// Takes the poses that the files have. Throws FileError if scans need a pose, but have none.
+void posesOfFiles(const std::vector<ScanPose>& scans, const FindScansOptions& options, AssignedPoses& assigned) {
+  std::vector<std::string> sources, missing;
   for (std::size_t i = 0; i < scans.size(); ++i) {
     const ScanPose& scan = scans[i];
-    if (!scan.source.empty() && std::find(sources.begin(), sources.end(), scan.source) == sources.end())
-      sources.push_back(scan.source);
-    if (!scan.lacks_pose) continue;
-    if (!skip_without_pose)
-      throw FileError(scan.path, scan.name + " has no pose (" + scan.source +
-                                     "); use --skip-without-pose to leave such scans out, or --poses FILE");
+    if (scan.in_map_frame) addOnce("none needed: the points are in the map frame", sources);
+    if (!scan.file_poses) continue;
+    addOnce(scan.file_poses->source, sources);
+    if (scan.has_pose || scan.file_poses->missing.empty() || options.frame == ScanFrame::Map) continue;
+    const bool may_be_alone = scans.size() == 1 && options.files.recording.poses.empty();
+    if (!may_be_alone && !options.skip_without_pose) throw FileError(scan.path, scan.file_poses->missing);
+    addOnce(scan.path.string() + ": " + scan.file_poses->missing, missing);
+    if (may_be_alone) continue;
     assigned.left_out[i] = true;
     assigned.without_pose.push_back(scan.label());
   }
-  if (!assigned.without_pose.empty())
-    assigned.warnings.push_back(countText(assigned.without_pose.size(), "scan") + " without a pose left out, first " +
-                                assigned.without_pose.front());
+  if (!scans.empty() && assigned.without_pose.size() == scans.size())
+    throw FileError(scans.front().path, scans.front().file_poses->missing);
+  assigned.warnings.insert(assigned.warnings.end(), missing.begin(), missing.end());
   for (const std::string& source : sources) assigned.description += (assigned.description.empty() ? "" : "; ") + source;
-  if (sources.empty()) assigned.description = "none in the files";
+  if (sources.empty()) assigned.description = "none in the files, so the sensor is at the origin";
 }
 
 /// The names and times of the scans.
@@ -175,7 +186,7 @@ AssignedPoses assignPoses(std::vector<ScanPose>& scans, const FindScansOptions& 
   setTimes(keys, assigned);
   std::optional<Extrinsic> extrinsic = options.extrinsic;
   if (options.poses.empty())
-    posesOfFiles(scans, options.skip_without_pose, assigned);
+    posesOfFiles(scans, options, assigned);
   else
     readPoses(scans, keys, options, assigned, extrinsic);
   for (const ScanPose& scan : scans) assigned.as_read.push_back(scan.pose);

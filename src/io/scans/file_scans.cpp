@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "io/pcd/pcd_scan_file.h"
 #include "io/scans/coordinate_checks.h"
 #include "io/scans/scan_files.h"
 
@@ -37,7 +38,7 @@ class SampledReader : public ScanReader {
 }  // namespace
 
 FileScans::FileScans(std::vector<FileScan> scans, ScanFrame frame, const FileOptions& options)
-    : FileScans(std::move(scans), frame, std::make_shared<ScanFiles>(options)) {}
+    : FileScans(std::move(scans), frame, std::make_shared<ScanFiles>(OpenOptions{options, false, {}})) {}
 
 FileScans::FileScans(std::vector<FileScan> scans, ScanFrame frame, std::shared_ptr<ScanFiles> files)
     : scans_(std::move(scans)),
@@ -69,11 +70,7 @@ std::unique_ptr<ScanReader> FileScans::open(std::size_t index) const {
   if (!reader) {
     const std::shared_ptr<const ScanFile> file = files_->file(file_of_.at(index));
     reader = file->open(scans_[index].index);
-    if (file->keepsPoints()) {
-      const std::optional<PcdReader> pcd = file->pcd();
-      const std::size_t record = std::max(3 * sizeof(double), pcd ? pcd->header().record_size : 0);
-      kept_->keep(index, reader, record * reader->size());  // at most
-    }
+    if (const std::size_t bytes = file->memoryOf(scans_[index].index); bytes > 0) kept_->keep(index, reader, bytes);
   }
   return std::make_unique<SampledReader>(std::move(reader), index, samples_);
 }
@@ -82,8 +79,14 @@ std::string FileScans::kind(std::size_t index) const {
   return files_->file(file_of_.at(index))->kind();
 }
 
+std::string FileScans::coordinateSystem(std::size_t index) const {
+  return files_->file(file_of_.at(index))->coordinateSystem();
+}
+
 std::optional<PcdReader> FileScans::pcd(std::size_t index) const {
-  return files_->file(file_of_.at(index))->pcd();
+  const std::shared_ptr<const ScanFile> file = files_->file(file_of_.at(index));
+  const auto* const pcd_file = dynamic_cast<const PcdScanFile*>(file.get());
+  return pcd_file == nullptr ? std::nullopt : std::optional(pcd_file->reader());
 }
 
 void FileScans::keepForNextOpen(std::size_t bytes) {

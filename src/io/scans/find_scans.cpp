@@ -41,20 +41,21 @@ struct ListedScans {
 /// Adds all scans of a file.
 void addScansOf(const std::filesystem::path& path, ListedScans& listed) {
   const std::shared_ptr<const ScanFile> file = listed.files->add(path).file;
-  const std::optional<PcdReader> pcd = file->pcd();
+  const auto file_poses = std::make_shared<const PosesInFile>(PosesInFile{file->poseSource(), file->missingPoses()});
   for (std::size_t i = 0; i < file->size(); ++i) {
     const FileScanInfo info = file->info(i);
-    listed.scans.push_back({path, Pose(), std::nullopt, i, info.name});
+    listed.scans.push_back({path, Pose(), std::nullopt, i, info.name, true});
     ScanPose& scan = listed.poses.emplace_back();
     scan.path = path;
     scan.name = info.name;
     scan.time = info.time;
     scan.pose = info.pose.value_or(Pose());
-    scan.source = file->poseSource();
     scan.position_step = info.position_step;
-    scan.lacks_pose = !info.pose && !scan.source.empty();
+    scan.has_pose = info.pose.has_value();
     scan.in_map_frame = file->inMapFrame();
-    scan.fingerprint = pcd ? pcd->fingerprint() : std::hash<std::string>()(path.string() + ":" + std::to_string(i));
+    scan.file_poses = file_poses;
+    scan.fingerprint =
+        info.fingerprint != 0 ? info.fingerprint : std::hash<std::string>()(path.string() + ":" + std::to_string(i));
   }
   for (const std::string& warning : file->warnings()) listed.warnings.push_back(path.string() + ": " + warning);
 }
@@ -76,7 +77,8 @@ FoundScans findScans(const std::vector<std::filesystem::path>& inputs, const Fin
   const std::vector<std::filesystem::path> paths = listScans(inputs);
   std::vector<std::string> warnings;
   warnOfScansGivenTwice(paths, warnings);
-  ListedScans listed{std::make_shared<ScanFiles>(options.files), {}, {}, {}};
+  const OpenOptions opening{options.files, options.poses.empty(), options.matching.max_time_gap};
+  ListedScans listed{std::make_shared<ScanFiles>(opening), {}, {}, {}};
   for (const std::filesystem::path& path : paths) addScansOf(path, listed);
   warnings.insert(warnings.end(), listed.warnings.begin(), listed.warnings.end());
   std::vector<ScanPose>& checked = listed.poses;
@@ -91,7 +93,9 @@ FoundScans findScans(const std::vector<std::filesystem::path>& inputs, const Fin
     kept.push_back(checked[i]);
     scans.push_back(std::move(listed.scans[i]));
     scans.back().time = assigned.times[i];
+    scans.back().has_sensor_position = !checked[i].in_map_frame;
   }
+  if (scans.empty()) throw FileError(paths.at(0), "holds no scan");
   if (options.frame == ScanFrame::Map) dropUnneededRotations(kept, warnings);
   const PoseDiagnosis diagnosis = diagnosePoses(kept);
   for (std::size_t i = 0; i < kept.size(); ++i) scans[i].pose = normalised(kept[i].pose);

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,17 +14,23 @@
 
 namespace gaussmap::detail {
 
+/// What a file says about the poses of its scans.
+struct PosesInFile {
+  std::string source;   ///< ScanFile::poseSource()
+  std::string missing;  ///< ScanFile::missingPoses()
+};
+
 /// Input of the pose checks for one scan; small enough to keep for all scans.
 struct ScanPose {
   std::filesystem::path path;
-  Pose pose;                                                    ///< as given, with a quaternion that is not normalised
-  std::uint64_t fingerprint = 0;                                ///< differs between different clouds
-  std::string name = "";                                        ///< of the scan in a file with several scans
+  Pose pose;                      ///< as given, with a quaternion that is not normalised
+  std::uint64_t fingerprint = 0;  ///< differs between different clouds
+  double position_step = 0.0;     ///< PcdHeader::viewpoint_step; 0 if the pose comes from elsewhere
+  bool has_pose = true;           ///< false: the file gives no pose, and `pose` is the identity
+  bool in_map_frame = false;      ///< true: no pose is needed
+  std::string name = "";          ///< of the scan in a file with several scans
   std::optional<std::chrono::nanoseconds> time = std::nullopt;  ///< from the file
-  std::string source = "";                                      ///< where the pose comes from; empty: the file has none
-  double position_step = 0.0;  ///< PcdHeader::viewpoint_step; 0 if the pose comes from elsewhere
-  bool lacks_pose = false;     ///< true: other scans of the file have poses, but not this one
-  bool in_map_frame = false;   ///< true: no pose is needed
+  std::shared_ptr<const PosesInFile> file_poses = nullptr;      ///< nullptr: as if both texts were empty
 
   /// Returns the name for messages.
   std::string label() const { return path.string() + (name.empty() ? "" : ": " + name); }

@@ -3,8 +3,6 @@
 
 #include <utility>
 
-#include "io/formats/open_scan_file.h"
-
 namespace gaussmap::detail {
 namespace {
 

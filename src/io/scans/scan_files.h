@@ -6,11 +6,12 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include "gaussmap/io/scans/file_scans.h"
 #include "io/formats/scan_file.h"
-#include "io/scans/coordinate_checks.h"
+#include "io/scans/open_scan_file.h"
 
 namespace gaussmap::detail {
 
@@ -18,7 +19,7 @@ namespace gaussmap::detail {
 /// are needed.
 class ScanFiles {
  public:
-  explicit ScanFiles(FileOptions options) : options_(std::move(options)) {}
+  explicit ScanFiles(OpenOptions options) : options_(std::move(options)) {}
 
   struct Added {
     std::size_t number;
@@ -30,7 +31,7 @@ class ScanFiles {
   std::shared_ptr<const ScanFile> file(std::size_t number) const;
 
  private:
-  FileOptions options_;
+  OpenOptions options_;
   std::vector<std::filesystem::path> paths_;
   std::vector<std::shared_ptr<const ScanFile>> open_;  // the first files
   std::map<std::filesystem::path, std::size_t> numbers_;

@@ -136,6 +136,7 @@ class CloudText : public ScanFile {
   std::unique_ptr<ScanReader> open(std::size_t scan) const override {
     return std::make_unique<TextReader>(text_, text_->index.blocks[scan]);
   }
+  std::size_t memoryOf(std::size_t) const override { return 0; }
   std::vector<std::string> warnings() const override { return text_->layout.warnings; }
 
  private:

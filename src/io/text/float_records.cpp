@@ -81,6 +81,7 @@ class FloatRecords : public ScanFile {
   std::size_t size() const override { return 1; }
   FileScanInfo info(std::size_t) const override { return {"", records_->count()}; }
   std::unique_ptr<ScanReader> open(std::size_t) const override { return std::make_unique<RecordsReader>(records_); }
+  std::size_t memoryOf(std::size_t) const override { return 0; }
   std::vector<std::string> warnings() const override { return records_->layout.warnings; }
 
  private:

@@ -229,6 +229,8 @@ class PtxFile : public ScanFile {
     return {name, ptx_->index.blocks[scan].rows, ptx_->scans[scan].pose};
   }
   std::unique_ptr<ScanReader> open(std::size_t scan) const override { return std::make_unique<PtxReader>(ptx_, scan); }
+  std::string poseSource() const override { return "PTX header of each scan"; }
+  std::size_t memoryOf(std::size_t) const override { return 0; }
   std::vector<std::string> warnings() const override { return ptx_->warnings; }
 
  private:

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "gaussmap/core/error.h"
+#include "io/formats/kind_of_start.h"
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "records are read as they are in memory");
 
@@ -66,32 +67,6 @@ std::string misfit(const KnownRecord& known, std::string_view bytes) {
 bool endsWith(std::string_view text, std::string_view end) {
   return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
 }
-
-struct Magic {
-  std::string_view bytes;
-  const char* kind;
-};
-using namespace std::string_view_literals;
-constexpr Magic kMagics[] = {{"ply\n"sv, "a PLY file"},
-                             {"ply\r"sv, "a PLY file"},
-                             {"# .PCD"sv, "a PCD file"},
-                             {"VERSION "sv, "a PCD file"},
-                             {"FIELDS "sv, "a PCD file"},
-                             {"LASF"sv, "a LAS or LAZ file"},
-                             {"ASTM-E57"sv, "an E57 file"},
-                             {"\x89MCAP"sv, "an MCAP file"},
-                             {"#ROSBAG"sv, "a ROS bag"},
-                             {"SQLite format 3"sv, "an SQLite file"},
-                             {"\x1F\x8B"sv, "a gzip file, expand it with gunzip"},
-                             {"PK\x03\x04"sv, "a zip file, expand it with unzip"},
-                             {"\x28\xB5\x2F\xFD"sv, "a zstd file, expand it with unzstd"},
-                             {"\x93NUMPY"sv, "a file of numpy; save the array with tofile()"},
-                             {"\x89HDF"sv, "an HDF5 file"},
-                             {"\x89PNG"sv, "a PNG picture"},
-                             {"\x7F"
-                              "ELF"sv,
-                              "a program"},
-                             {"%PDF"sv, "a PDF document"}};
 
 }  // namespace
 
@@ -181,16 +156,10 @@ std::string likelyRecord(std::string_view bytes) {
 }
 
 void refuseOtherKinds(const std::filesystem::path& path, std::string_view bytes) {
-  constexpr std::size_t kLooked = 4096;
   constexpr std::size_t kEnough = 12;  // the bytes of fewer floats can be letters by chance
-  for (const Magic& magic : kMagics)
-    if (bytes.substr(0, magic.bytes.size()) == magic.bytes)
-      throw FileError(path, std::string("is ") + magic.kind + ", not raw records of floats");
-  const std::string_view start = bytes.substr(0, kLooked);
-  const bool is_text = start.size() >= kEnough && std::all_of(start.begin(), start.end(), [](char c) {
-                         return (c >= ' ' && c <= '~') || c == '\t' || c == '\r' || c == '\n';
-                       });
-  if (is_text) throw FileError(path, "is a text, not raw records of floats");
+  if (const std::string kind = kindOfStart(bytes); !kind.empty())
+    throw FileError(path, "is " + kind + ", not raw records of floats");
+  if (bytes.size() >= kEnough && looksLikeText(bytes)) throw FileError(path, "is a text, not raw records of floats");
 }
 
 }  // namespace gaussmap::detail

@@ -59,9 +59,10 @@ inline std::size_t tableOffset(const std::string& bytes) {
 }
 
 template <typename T>
-std::string changedAt(std::string bytes, std::size_t place, T value) {
-  std::memcpy(&bytes.at(place), &value, sizeof(value));
-  return bytes;
+std::string changedAt(const std::string& bytes, std::size_t place, T value) {
+  std::string changed = bytes;
+  std::memcpy(&changed.at(place), &value, sizeof(value));
+  return changed;
 }
 
 /// Reads everything that a file has.

@@ -49,19 +49,19 @@ class BagScansTest : public testing::Test {
     for (int i = 0; i < 12; ++i)
       bag_->add(index, kStart, odometryBytes(kStart - 0.05 + 0.1 * i, parent, child, poseAt(0.1 * i)));
   }
-  std::unique_ptr<BagScans> open(const BagOptions& options = {}) {
+  std::unique_ptr<ScanFile> open(const BagOptions& options = {}) {
     return openBagScans(std::make_unique<test::MemoryMessages>(*bag_), "drive.bag", options);
   }
   std::string complaint(const BagOptions& options) {
     return complaintOf([&] { open(options); });
   }
-  static std::string warningsOf(const BagScans& scans) {
+  static std::string warningsOf(const ScanFile& scans) {
     std::string all;
     for (const std::string& warning : scans.warnings()) all += warning + "\n";
     return all;
   }
   /// Expects the pose `offset` + 0.1 m per scan.
-  static void expectMotion(const BagScans& scans, double offset) {
+  static void expectMotion(const ScanFile& scans, double offset) {
     for (std::size_t i = 0; i < scans.size(); ++i) {
       const FileScanInfo info = scans.info(i);
       ASSERT_TRUE(info.pose) << i << "\n" << warningsOf(scans);
@@ -95,8 +95,7 @@ TEST_F(BagScansTest, HavePosesOfTransforms) {
     const auto scans = open(options);
     ASSERT_EQ(scans->size(), 10u);
     EXPECT_EQ(scans->kind(), "memory, sensor_msgs/PointCloud2");
-    EXPECT_EQ(scans->topic(), "/points");
-    EXPECT_EQ(scans->poseDescription(), "poses from tf: lidar in odom");
+    EXPECT_EQ(scans->poseSource(), "tf: lidar in odom");
     EXPECT_EQ(warningsOf(*scans), "");
     expectMotion(*scans, 1.05);
     const FileScanInfo info = scans->info(1);
@@ -115,7 +114,7 @@ TEST_F(BagScansTest, PreferMapOverOdomOverTheRoot) {
   expectMotion(*open(), 100.05);
   BagOptions options;
   options.fixed_frame = "/utm";
-  EXPECT_EQ(open(options)->poseDescription(), "poses from tf: lidar in utm");
+  EXPECT_EQ(open(options)->poseSource(), "tf: lidar in utm");
   expectMotion(*open(options), 1000100.05);
   options.fixed_frame = "mars";
   options.poses = BagPoses::Tf;
@@ -129,8 +128,7 @@ TEST_F(BagScansTest, HavePosesOfOdometryAndTheStaticTransformToTheSensor) {
   staticTransform("base_link", "lidar", poseAt(2.0));
   for (const BagOptions& options : {BagOptions(), fromTopic("odom")}) {
     const auto scans = open(options);
-    EXPECT_EQ(scans->poseDescription(),
-              "poses from /odom (nav_msgs/Odometry): base_link in odom, then base_link -> lidar of tf");
+    EXPECT_EQ(scans->poseSource(), "/odom (nav_msgs/Odometry): base_link in odom, then base_link -> lidar of tf");
     EXPECT_EQ(warningsOf(*scans), "");
     expectMotion(*scans, 2.05);
   }
@@ -141,7 +139,7 @@ TEST_F(BagScansTest, PreferOdometryOverTransformsOnTheRobot) {
   odometry("/odom", "odom", "base_link");
   movingTransform("base_link", "lidar");  // a sensor that is moved
   const auto scans = open();
-  EXPECT_TRUE(has(scans->poseDescription(), "/odom")) << scans->poseDescription();
+  EXPECT_TRUE(has(scans->poseSource(), "/odom")) << scans->poseSource();
   for (std::size_t i = 0; i < 10; ++i)
     EXPECT_NEAR(scans->info(i).pose.value().translation.x(), 0.1 + 0.2 * static_cast<double>(i), 1e-9);
 }
@@ -180,7 +178,7 @@ TEST_F(BagScansTest, HavePosesOfEveryType) {
     expectMotion(*scans, 0.0);
     EXPECT_EQ(has(warningsOf(*scans), "does not say whose poses it gives"), std::string(topic) != "/transform");
   }
-  EXPECT_TRUE(has(open()->poseDescription(),
+  EXPECT_TRUE(has(open()->missingPoses(),
                   "no poses: choose the topic with the poses of the sensor: /pose (geometry_msgs/PoseStamped, 11"));
   EXPECT_FALSE(open()->info(0).pose);
 }
@@ -205,7 +203,8 @@ TEST_F(BagScansTest, LeavePointsInTheFixedFrameWhereTheyAre) {
   EXPECT_TRUE(has(warningsOf(*scans), "the positions of the sensor are unknown"));
   movingTransform("camera_init", "body");
   scans = open();
-  EXPECT_EQ(scans->poseDescription(), "poses from tf: camera_init in camera_init");
+  EXPECT_EQ(scans->poseSource(), "tf: camera_init in camera_init");
+  EXPECT_TRUE(scans->inMapFrame());
   EXPECT_EQ(scans->info(5).pose.value().translation.norm(), 0.0);
   EXPECT_TRUE(has(warningsOf(*scans), "the positions of the sensor are unknown"));
 }
@@ -216,26 +215,26 @@ TEST_F(BagScansTest, HaveNoPosesIfNoneAreWanted) {
   BagOptions options;
   options.poses = BagPoses::None;
   EXPECT_FALSE(open(options)->info(0).pose);
-  EXPECT_EQ(open(options)->poseDescription(), "");
+  EXPECT_EQ(open(options)->poseSource() + open(options)->missingPoses(), "");
 }
 
 TEST_F(BagScansTest, SayWhyThereAreNoPoses) {
   clouds();
-  EXPECT_EQ(open()->poseDescription(), "no poses: the recording has no odometry, and no tf; give a file of poses");
+  EXPECT_EQ(open()->missingPoses(),
+            "no poses: the recording has no odometry, and no tf; give a file of poses with --poses FILE");
   expectComplaint(complaint(fromTf()), "drive.bag", {"the recording has no messages of tf"});
   staticTransform("base_link", "velodyne", Pose());
   EXPECT_TRUE(
-      has(open()->poseDescription(), "no transform in tf has the frame lidar (the frames are base_link, velodyne"));
+      has(open()->missingPoses(), "no transform in tf has the frame lidar (the frames are base_link, velodyne"));
   staticTransform("map", "lidar", Pose());
-  EXPECT_TRUE(has(open()->poseDescription(), "the transform from lidar to map in tf does not move"));
+  EXPECT_TRUE(has(open()->missingPoses(), "the transform from lidar to map in tf does not move"));
   const auto scans = open(fromTf());
   EXPECT_TRUE(scans->info(0).pose);
   EXPECT_TRUE(has(warningsOf(*scans), "all scans have the same pose"));
   odometry("/a", "odom", "base_link");
   odometry("/b", "odom", "base_link");
-  EXPECT_TRUE(
-      has(open()->poseDescription(), "/a (nav_msgs/Odometry, 12 messages), /b (nav_msgs/Odometry, 12 messages)"))
-      << open()->poseDescription();
+  EXPECT_TRUE(has(open()->missingPoses(), "/a (nav_msgs/Odometry, 12 messages), /b (nav_msgs/Odometry, 12 messages)"))
+      << open()->missingPoses();
   expectComplaint(complaint(fromTopic("/c")), "drive.bag", {"has no topic /c with poses", "/a (nav_msgs/Odometry"});
 }
 
@@ -246,10 +245,10 @@ TEST_F(BagScansTest, SayWhichScansHaveNoPose) {
   EXPECT_FALSE(scans->info(1).pose);
   EXPECT_TRUE(scans->info(2).pose);
   EXPECT_TRUE(
-      has(warningsOf(*scans),
+      has(scans->missingPoses(),
           "2 of 10 scans have no pose, first /points 1700000000.000000000: the transform odom -> lidar starts at "
           "1700000000.150000000"))
-      << warningsOf(*scans);
+      << scans->missingPoses();
   BagOptions options;
   options.max_time_gap = 0.06;
   EXPECT_TRUE(open(options)->info(1).pose);
@@ -263,9 +262,9 @@ TEST_F(BagScansTest, TakeNoPoseThatIsTooFarAwayInTime) {
   EXPECT_TRUE(scans->info(0).pose);
   EXPECT_FALSE(scans->info(2).pose);
   EXPECT_TRUE(
-      has(warningsOf(*scans),
+      has(scans->missingPoses(),
           "s from the nearest pose, at most 0.050000000 s are allowed. The poses are from 1699999999.950000000"))
-      << warningsOf(*scans);
+      << scans->missingPoses();
 }
 
 TEST_F(BagScansTest, LeaveOutPosesWithFaults) {
@@ -311,7 +310,7 @@ TEST_F(BagScansTest, AskForATopicIfSeveralHaveScans) {
                    "(sensor_msgs/PointCloud2, 10 messages); choose one with --topic /front/points"});
   BagOptions options;
   options.topic = "rear/points";
-  EXPECT_EQ(open(options)->topic(), "/rear/points");
+  EXPECT_EQ(open(options)->info(0).name, "/rear/points 1700000000.000000000");
   options.topic = "/imu";
   expectComplaint(complaint(options), "drive.bag", {"topic /imu (sensor_msgs/Imu, 0 messages) holds no scans"});
   options.topic = "/empty";

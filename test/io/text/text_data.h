@@ -15,7 +15,7 @@ namespace gaussmap::test {
 
 /// Returns the path of a file that make.py has written.
 inline std::filesystem::path textData(const std::string& name) {
-  return std::filesystem::path(__FILE__).parent_path().parent_path().parent_path() / "data" / "formats" / "text" / name;
+  return std::filesystem::path(GAUSSMAP_TEST_DATA) / "formats" / "text" / name;
 }
 
 /// Returns the numbers of a file, one vector per line.

@@ -105,6 +105,10 @@ inline constexpr const char* kHistoryEntry = "history";
 /// `[{"scale": s, "points": [{"gaussians": n, "q99": m, "q95": m, "mean": m}, ...]}, ...]`.
 inline constexpr const char* kCurvesEntry = "error_curves";
 
+/// Name of the metadata entry with the coordinate reference system of the map frame, as text (often WKT), if the scans
+/// had one.
+inline constexpr const char* kCoordinateSystemEntry = "coordinate_system";
+
 /// Returns the history step of a refinement as a JSON object: the method, the budget, the options that change the map
 /// and differ from their defaults, and the seed if the method is RefineMethod::Insert.
 ///

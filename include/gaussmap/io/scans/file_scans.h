@@ -31,13 +31,25 @@ struct FileScan {
   std::optional<double> time = std::nullopt;  ///< time of the scan [s]; std::nullopt if unknown
   std::size_t index = 0;                      ///< of the scan in a file with several scans
   std::string name = "";                      ///< of the scan in a file with several scans, for messages
+  /// False: the points are in the map frame, and the file does not say where the sensor was, as in LAS files.
+  bool has_sensor_position = true;
+};
+
+/// Options for recordings of ROS: MCAP files, databases of rosbag2, and bags of ROS 1.
+struct RecordingOptions {
+  std::string topic;        ///< of the scans; empty: the only one of PointCloud2, else of LaserScan
+  std::string poses;        ///< where poses come from: "tf", or a topic such as "/odom"; empty: see findScans()
+  std::string pose_frame;   ///< frame whose poses the topic gives; empty: its child_frame_id, else that of the scans
+  std::string fixed_frame;  ///< frame that becomes the map frame; empty: in tf map, else odom; of a topic its frame_id
+  bool log_times = false;   ///< true: times of recording count, not those in the headers of the messages
 };
 
 /// What the content of some files does not say.
 struct FileOptions {
-  std::string fields;  ///< names of the columns of a text or of raw floats: "x y z intensity"; empty: recognised
-  std::string topic;   ///< topic of the scans in a recording; empty: the only one
-  std::string frame;   ///< frame of a recording that becomes the map frame; empty: map, or else odom
+  /// Names of the columns of a text, or of the fields of raw records such as .bin files: "x y z intensity". "-" skips a
+  /// column; "x:mm" and "time:ns" give units, "ring:u16" gives the type in a record. Empty: found from the content.
+  std::string fields;
+  RecordingOptions recording;  ///< for recordings
 };
 
 /// Scans in files of any kind that gaussmap reads. The kind of a file follows from its content.
@@ -47,7 +59,8 @@ struct FileOptions {
 /// fields with several numbers have an index: "normal[2]".
 class GAUSSMAP_API FileScans : public Scans {
  public:
-  /// Opens the files and checks their headers. Throws FileError if a file is not usable or has no scan with this index.
+  /// Opens the files and checks their headers. Poses in the files are not used. Throws FileError if a file is not
+  /// usable or has no scan with this index, and std::invalid_argument if options.fields is not valid.
   explicit FileScans(std::vector<FileScan> scans, ScanFrame frame = ScanFrame::Sensor, const FileOptions& options = {});
   ~FileScans() override;
   FileScans(FileScans&&) noexcept;
@@ -62,6 +75,9 @@ class GAUSSMAP_API FileScans : public Scans {
   const std::vector<FileScan>& files() const { return scans_; }
   /// Returns the kind of the file of a scan, for messages: "PCD binary", "LAS 1.2, point format 3". Throws like open().
   std::string kind(std::size_t index) const;
+  /// Returns the coordinate reference system of the file of a scan, as text (often WKT); empty if the file has none.
+  /// Throws like open().
+  std::string coordinateSystem(std::size_t index) const;
   /// Returns a reader of the file of a scan if it is a PCD file, for access to its header, records and columns;
   /// std::nullopt for other files. Throws like open().
   std::optional<PcdReader> pcd(std::size_t index) const;
@@ -91,9 +107,11 @@ class GAUSSMAP_API FileScans : public Scans {
 
 /// Returns the files of a list of inputs, in the order of the inputs.
 ///
-/// A file is listed unchanged. A directory is replaced by the *.pcd and *.pcd.gz files in it, in natural order. The
-/// search is not recursive, ignores case, and skips hidden files. Throws FileError if an input does not exist or a
-/// directory has no such file.
+/// A file is listed unchanged, and so is the folder of a recording (with metadata.yaml, or with nothing but .mcap, .db3
+/// or .bag files). Another directory is replaced by its *.pcd and *.pcd.gz files, in natural order; if it has none, by
+/// the files of another kind (.bin .ply .las .laz .e57 .pts .ptx .xyz .mcap .db3 .bag). The search is not recursive,
+/// ignores case, and skips hidden files. Throws FileError if an input does not exist, or if a directory has no such
+/// file or has files of several kinds, but no PCD file.
 GAUSSMAP_API std::vector<std::filesystem::path> listScans(const std::vector<std::filesystem::path>& inputs);
 
 /// The pose of the sensor in the frame that the poses describe, for example of a lidar on a vehicle.
@@ -111,7 +129,7 @@ GAUSSMAP_API Extrinsic readExtrinsic(const std::filesystem::path& file);
 
 /// Options of findScans().
 struct FindScansOptions {
-  std::filesystem::path poses;                              ///< pose file; empty: the VIEWPOINT of each scan
+  std::filesystem::path poses;                              ///< pose file; empty: the poses in the files
   PoseFormat pose_format = PoseFormat::Automatic;           ///< kind of the pose file
   std::string pose_columns;                                 ///< names of its columns, for PoseFormat::Table
   PoseMatching matching;                                    ///< how poses and scans are matched
@@ -135,9 +153,17 @@ struct FoundScans {
 
 /// Lists the scans (see listScans()), assigns the poses, and checks them.
 ///
-/// The pose of a scan is its VIEWPOINT, unless the options name a pose file (see readPoseFile() and matchPoses()).
+/// If the options name a pose file, the poses come from it (see readPoseFile() and matchPoses()). Otherwise they are
+/// those in the files:
+/// - PCD: VIEWPOINT. E57 and PTX: the pose of each scan.
+/// - Recordings: the pose of the sensor frame in the fixed frame at the time of the scan. It comes from tf if a moving
+///   transform connects the frames, else from the only topic of odometry. Transforms are interpolated between
+///   neighbours at most 1 s apart, and poses of a topic between neighbours at most twice the interval of the scans
+///   apart. PoseMatching::max_time_gap replaces these limits.
+/// - LAS and LAZ: none, because the points are in the map frame. Other files: the sensor is at the origin.
+///
 /// There is a warning if a scan is listed twice. Throws FileError if a file cannot be read or is a map, if a scan has
-/// no pose, or if a pose is not usable.
+/// no pose, or if a pose is not usable. Throws std::invalid_argument if options.files.fields is not valid.
 GAUSSMAP_API FoundScans findScans(const std::vector<std::filesystem::path>& inputs,
                                   const FindScansOptions& options = {});
 /// The same with a pose file and the defaults of the other options.

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/scans/open_scan_file.h"
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "io/e57/e57_file.h"
+#include "io/files/gunzip.h"
+#include "io/files/mapped_file.h"
+#include "io/files/text.h"
+#include "io/formats/kind_of_start.h"
+#include "io/formats/message_file.h"
+#include "io/las/las_file.h"
+#include "io/laz/laz_file.h"
+#include "io/messages/bag_scans.h"
+#include "io/pcd/pcd_header.h"
+#include "io/pcd/pcd_scan_file.h"
+#include "io/ply/ply_cloud.h"
+#include "io/scans/scan_names.h"
+#include "io/text/cloud_text.h"
+#include "io/text/float_records.h"
+
+namespace gaussmap::detail {
+namespace {
+
+constexpr std::size_t kStart = 4096;  // bytes that tell the kind of a file
+
+BagPoses bagPosesOf(const OpenOptions& options) {
+  if (!options.needs_poses) return BagPoses::None;
+  const std::string& poses = options.files.recording.poses;
+  if (poses.empty()) return BagPoses::Automatic;
+  return poses == "tf" ? BagPoses::Tf : BagPoses::Topic;
+}
+
+std::shared_ptr<const ScanFile> openRecording(const std::filesystem::path& path, const OpenOptions& options) {
+  const RecordingOptions& recording = options.files.recording;
+  BagOptions bag;
+  bag.topic = recording.topic;
+  bag.poses = bagPosesOf(options);
+  bag.pose_topic = recording.poses;
+  bag.pose_frame = recording.pose_frame;
+  bag.fixed_frame = recording.fixed_frame;
+  bag.max_time_gap = options.max_time_gap;
+  bag.log_times = recording.log_times;
+  return openBagScans(openMessageFile(path), path, bag);
+}
+
+/// Opens a file whose columns or fields the user names.
+std::shared_ptr<const ScanFile> openWithFields(const std::filesystem::path& path, std::string_view start,
+                                               const std::string& fields) {
+  if (const std::string kind = kindOfStart(start); !kind.empty())
+    throw FileError(path, "is " + kind + ": fields can be given only for texts and raw records, as in .bin files");
+  if (start.empty() || looksLikeText(start) || isCloudText(start)) return openCloudText(path, {fields});
+  return openFloatRecords(path, {fields});
+}
+
+/// Only PCD files are read while they are compressed with gzip.
+std::shared_ptr<const ScanFile> openGzip(const std::filesystem::path& path) {
+  const std::string extension = scanExtension(path.stem());
+  if (extension.empty() || extension == ".pcd") return openPcd(path);
+  throw FileError(path, "is compressed with gzip; expand it with gunzip (only PCD files can stay compressed)");
+}
+
+/// Returns true for a map file: an SQLite database with the application id of gaussmap.
+bool isMapFile(std::string_view start) {
+  constexpr std::size_t kApplicationId = 68;  // bytes from the start
+  return start.size() > kApplicationId && start.substr(kApplicationId, 4) == "gmap";
+}
+
+/// Opens a file whose content is not that of a known kind. The name then decides whose message is the best.
+std::shared_ptr<const ScanFile> openByName(const std::filesystem::path& path, std::string_view start) {
+  const std::string extension = scanExtension(path.filename());
+  if (extension == ".bin") return openFloatRecords(path);
+  if (extension == ".pcd") return openPcd(path);
+  if (start.empty()) throw FileError(path, "the file is empty");
+  if (isMapFile(start)) throw FileError(path, "is a map, not a file of scans; gaussmap merge combines maps");
+  if (const std::string kind = kindOfStart(start); !kind.empty())
+    throw FileError(path, "is " + kind + ", not a file of scans");
+  if (looksLikeText(start)) return openCloudText(path);
+  throw FileError(path,
+                  "is of no kind that gaussmap reads (PCD, PLY, LAS, LAZ, E57, text, MCAP, bags of ROS); if it "
+                  "holds raw numbers, name their fields: --fields \"x y z intensity\"");
+}
+
+}  // namespace
+
+std::shared_ptr<const ScanFile> openScanFile(const std::filesystem::path& path, const OpenOptions& options) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) return openRecording(path, options);
+  const MappedFile file(path);
+  const std::string_view start = file.bytes().substr(0, kStart);
+  if (const std::string& fields = options.files.fields; !fields.empty()) return openWithFields(path, start, fields);
+  if (isPcd(start)) return openPcd(path);
+  if (isE57(start)) return openE57(path);
+  if (isLaz(start)) return openLaz(path);
+  if (isLas(start)) return openLas(path);
+  if (isPly(start)) return openPlyCloud(path);
+  if (isMessageFile(path)) return openRecording(path, options);
+  if (isGzip(start)) return openGzip(path);
+  if (isCloudText(start)) return openCloudText(path);
+  return openByName(path, start);
+}
+
+}  // namespace gaussmap::detail
