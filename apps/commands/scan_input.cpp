@@ -138,9 +138,9 @@ Extrinsic extrinsicIn(const std::string& text) {
 /// Returns true if options are given that mean something else, or something only, for recordings.
 bool hasRecordingOptions(const ScanInput& input) {
   const RecordingOptions& recording = input.files.recording;
-  return namesTopic(input.poses) || (input.poses.empty() && (input.max_time_gap || input.skip_without_pose)) ||
-         !recording.topic.empty() || !recording.pose_frame.empty() || !recording.fixed_frame.empty() ||
-         recording.log_times;
+  return namesTopic(input.poses) || lacksSlash(input.poses) ||
+         (input.poses.empty() && (input.max_time_gap || input.skip_without_pose)) || !recording.topic.empty() ||
+         !recording.pose_frame.empty() || !recording.fixed_frame.empty() || recording.log_times;
 }
 
 /// Throws UsageError for options that have no effect.
@@ -159,13 +159,15 @@ void checkOptions(const ScanInput& input, bool has_recording) {
   require(has_recording, !recording.topic.empty(), "--topic", kRecording);
   require(has_recording, recording.log_times, "--log-times", kRecording);
   require(has_recording && !has_file, !recording.fixed_frame.empty(), "--fixed-frame", "poses of a recording");
-  require(has_recording && !has_file, !recording.pose_frame.empty(), "--pose-frame", "poses of a recording");
+  require(has_recording, !recording.pose_frame.empty(), "--pose-frame", kRecording);
 }
 
 }  // namespace
 
 FindScansOptions findOptions(const ScanInput& input) {
   const bool has_recording = hasRecordingOptions(input) && !recordingsIn(input.paths).empty();
+  if (has_recording && lacksSlash(input.poses))
+    throw UsageError("--poses " + input.poses + ": no such file; a topic begins with a slash: --poses /" + input.poses);
   checkOptions(input, has_recording);
   FindScansOptions options;
   options.files = input.files;

@@ -39,7 +39,8 @@ Json jsonOf(const BagTopicSummary& topic) {
 TopicTable topicsOf(const std::filesystem::path& recording) {
   const BagSummary summary = bagSummary(*openMessageFile(recording), recording);
   TopicTable table;
-  table.json = {{"file", recording.string()}, {"kind", summary.kind}, {"topics", Json::array()}, {"warnings", summary.warnings}};
+  table.json = {
+      {"file", recording.string()}, {"kind", summary.kind}, {"topics", Json::array()}, {"warnings", summary.warnings}};
   std::size_t name_width = 5, type_width = 4;
   for (const BagTopicSummary& topic : summary.topics) {
     name_width = std::max(name_width, topic.name.size());

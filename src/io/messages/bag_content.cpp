@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "io/messages/frame_names.h"
 #include "io/messages/message_scans.h"
 #include "io/messages/ros_messages.h"
 
@@ -40,14 +41,15 @@ class ContentReader {
       : file_(file), path_(path), options_(options), groups_(groupTopics(file)) {}
 
   BagContent read() {
-    content_.scan_topic = chooseScanTopic(path_, groups_, options_.topic);
+    content_.scan_topic = chooseScanTopic(path_, file_, groups_, options_.topic);
     uses_.assign(file_.topics().size(), {});
     use(content_.scan_topic, TopicUse::Scans, 0);
-    if (options_.poses != BagPoses::None) useTransforms();
+    if (options_.poses != BagPoses::None || !options_.pose_frame.empty()) useTransforms();
     if (options_.poses == BagPoses::Automatic || options_.poses == BagPoses::Topic) usePoseTopics();
     findLastPaths();
     const std::vector<MessagePlace>& messages = file_.messages();
     for (std::size_t i = 0; i < messages.size(); ++i) readMessage(i, messages[i]);
+    requireForwardTimes();
     content_.tree.finish();
     for (BagPoseTopic& topic : content_.pose_topics) topic.poses.finish();
     const auto has_no_poses = [](const BagPoseTopic& topic) { return topic.poses.empty(); };
@@ -178,6 +180,18 @@ class ContentReader {
     }
     const nanoseconds time = is_static ? kNoStamp : timeOf(message, transform.stamp, poses_without_stamp_);
     content_.tree.add(transform.parent, transform.child, time, transform.pose, is_static);
+  }
+
+  /// Throws FileError if the times of the scans step back: poses could not be told apart by their times.
+  void requireForwardTimes() const {
+    if (options_.log_times) return;
+    nanoseconds last = nanoseconds::min();
+    for (const BagScan& scan : content_.scans) {
+      if (last > scan.time && last - scan.time > kMostStepBack)
+        throw FileError(path_, "the times in the headers of " + shown(content_.scan_topic.name) + " step back by " +
+                                   stampText(last - scan.time) + " s to " + stampText(scan.time) + kResetAdvice);
+      last = std::max(last, scan.time);
+    }
   }
 
   void addWarnings() {

@@ -25,6 +25,15 @@ std::vector<TopicGroup> scanTopics(const std::vector<TopicGroup>& topics, const 
   return found;
 }
 
+/// Returns what to do if a topic holds the packets of a lidar.
+std::string packetHint(const std::vector<TopicGroup>& topics) {
+  for (const TopicGroup& topic : topics)
+    for (const char* const part : {"Packet", "VelodyneScan", "PandarScan", "rslidarScan", "livox", "LidarScan"})
+      if (topic.messages > 0 && topic.type.find(part) != std::string::npos)
+        return "; " + shown(topic.name) + " holds the packets of a lidar: its driver converts them to PointCloud2";
+  return "";
+}
+
 }  // namespace
 
 std::chrono::nanoseconds safeTime(std::chrono::nanoseconds time) {
@@ -61,8 +70,8 @@ std::string listTopics(const std::vector<TopicGroup>& topics) {
   return text.empty() ? "none" : text;
 }
 
-TopicGroup chooseScanTopic(const std::filesystem::path& path, const std::vector<TopicGroup>& topics,
-                           const std::string& name) {
+TopicGroup chooseScanTopic(const std::filesystem::path& path, const MessageFile& file,
+                           const std::vector<TopicGroup>& topics, const std::string& name) {
   if (!name.empty()) {
     std::vector<TopicGroup> named;
     for (const TopicGroup& topic : topics)
@@ -88,8 +97,10 @@ TopicGroup chooseScanTopic(const std::filesystem::path& path, const std::vector<
       throw FileError(path, "has several topics with scans: " + listTopics(found) + "; choose one with --topic " +
                                 shown(found.front().name));
   }
-  throw FileError(path, "has no messages of sensor_msgs/PointCloud2 or sensor_msgs/LaserScan; its topics are " +
-                            listTopics(topics));
+  std::string text = "has no messages of sensor_msgs/PointCloud2 or sensor_msgs/LaserScan; its topics are " +
+                     listTopics(topics) + packetHint(topics);
+  for (const std::string& warning : file.warnings()) text += "; " + warning;
+  throw FileError(path, text);
 }
 
 BagSummary bagSummary(const MessageFile& file, const std::filesystem::path& path) {

@@ -117,6 +117,8 @@ void readPoses(std::vector<ScanPose>& scans, const std::vector<ScanKey>& keys, c
   for (std::size_t i = 0; i < scans.size(); ++i)
     if (matched.poses[i]) {
       scans[i].pose = *matched.poses[i];
+      if (scans[i].mounting && poseFault(scans[i].pose).empty())
+        scans[i].pose = normalised(scans[i].pose) * *scans[i].mounting;
       scans[i].position_step = 0.0;
       scans[i].in_map_frame = false;
     }
@@ -136,16 +138,18 @@ void posesOfFiles(const std::vector<ScanPose>& scans, const FindScansOptions& op
     if (scan.in_map_frame) addOnce("none needed: the points are in the map frame", sources);
     if (!scan.file_poses) continue;
     addOnce(scan.file_poses->source, sources);
-    if (scan.has_pose || scan.file_poses->missing.empty() || options.frame == ScanFrame::Map) continue;
+    const MissingPoses& why = scan.file_poses->missing;
+    if (scan.has_pose || why.reason.empty() || options.frame == ScanFrame::Map) continue;
     const bool may_be_alone = scans.size() == 1 && options.files.recording.poses.empty();
-    if (!may_be_alone && !options.skip_without_pose) throw FileError(scan.path, scan.file_poses->missing);
-    addOnce(scan.path.string() + ": " + scan.file_poses->missing, missing);
+    if (!may_be_alone && !options.skip_without_pose) throw FileError(scan.path, why.reason + "; " + why.advice);
+    addOnce(scan.path.string() + ": " + why.reason, missing);
     if (may_be_alone) continue;
     assigned.left_out[i] = true;
     assigned.without_pose.push_back(scan.label());
   }
   if (!scans.empty() && assigned.without_pose.size() == scans.size())
-    throw FileError(scans.front().path, scans.front().file_poses->missing);
+    throw FileError(scans.front().path,
+                    scans.front().file_poses->missing.reason + "; " + scans.front().file_poses->missing.advice);
   assigned.warnings.insert(assigned.warnings.end(), missing.begin(), missing.end());
   for (const std::string& source : sources) assigned.description += (assigned.description.empty() ? "" : "; ") + source;
   if (sources.empty()) assigned.description = "none in the files, so the sensor is at the origin";

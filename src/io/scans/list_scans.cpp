@@ -70,8 +70,8 @@ std::string countsOf(const FilesPerKind& files) {
 std::vector<std::filesystem::path> scansIn(const std::filesystem::path& directory) {
   FilesPerKind files = filesIn(directory);
   if (files.empty())
-    throw FileError(directory, "no file of scans in this directory" + hintOfSubfolders(directory) +
-                                   hintOfTexts(directory));
+    throw FileError(directory,
+                    "no file of scans in this directory" + hintOfSubfolders(directory) + hintOfTexts(directory));
   const auto pcds = files.find(".pcd");
   if (pcds == files.end() && files.size() > 1)
     throw FileError(directory, "holds files of several kinds: " + countsOf(files) +

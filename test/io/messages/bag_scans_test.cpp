@@ -178,7 +178,7 @@ TEST_F(BagScansTest, HavePosesOfEveryType) {
     expectMotion(*scans, 0.0);
     EXPECT_EQ(has(warningsOf(*scans), "does not say whose poses it gives"), std::string(topic) != "/transform");
   }
-  EXPECT_TRUE(has(open()->missingPoses(),
+  EXPECT_TRUE(has(open()->missingPoses().reason,
                   "no poses: choose the topic with the poses of the sensor: /pose (geometry_msgs/PoseStamped, 11"));
   EXPECT_FALSE(open()->info(0).pose);
 }
@@ -215,26 +215,27 @@ TEST_F(BagScansTest, HaveNoPosesIfNoneAreWanted) {
   BagOptions options;
   options.poses = BagPoses::None;
   EXPECT_FALSE(open(options)->info(0).pose);
-  EXPECT_EQ(open(options)->poseSource() + open(options)->missingPoses(), "");
+  EXPECT_EQ(open(options)->poseSource() + open(options)->missingPoses().reason, "");
 }
 
 TEST_F(BagScansTest, SayWhyThereAreNoPoses) {
   clouds();
-  EXPECT_EQ(open()->missingPoses(),
+  EXPECT_EQ(open()->missingPoses().reason,
             "no poses: the recording has no odometry, and no tf; give a file of poses with --poses FILE");
   expectComplaint(complaint(fromTf()), "drive.bag", {"the recording has no messages of tf"});
   staticTransform("base_link", "velodyne", Pose());
   EXPECT_TRUE(
-      has(open()->missingPoses(), "no transform in tf has the frame lidar (the frames are base_link, velodyne"));
+      has(open()->missingPoses().reason, "no transform in tf has the frame lidar (the frames are base_link, velodyne"));
   staticTransform("map", "lidar", Pose());
-  EXPECT_TRUE(has(open()->missingPoses(), "the transform from lidar to map in tf does not move"));
+  EXPECT_TRUE(has(open()->missingPoses().reason, "the transform from lidar to map in tf does not move"));
   const auto scans = open(fromTf());
   EXPECT_TRUE(scans->info(0).pose);
   EXPECT_TRUE(has(warningsOf(*scans), "all scans have the same pose"));
   odometry("/a", "odom", "base_link");
   odometry("/b", "odom", "base_link");
-  EXPECT_TRUE(has(open()->missingPoses(), "/a (nav_msgs/Odometry, 12 messages), /b (nav_msgs/Odometry, 12 messages)"))
-      << open()->missingPoses();
+  EXPECT_TRUE(
+      has(open()->missingPoses().reason, "/a (nav_msgs/Odometry, 12 messages), /b (nav_msgs/Odometry, 12 messages)"))
+      << open()->missingPoses().reason;
   expectComplaint(complaint(fromTopic("/c")), "drive.bag", {"has no topic /c with poses", "/a (nav_msgs/Odometry"});
 }
 
@@ -245,10 +246,10 @@ TEST_F(BagScansTest, SayWhichScansHaveNoPose) {
   EXPECT_FALSE(scans->info(1).pose);
   EXPECT_TRUE(scans->info(2).pose);
   EXPECT_TRUE(
-      has(scans->missingPoses(),
+      has(scans->missingPoses().reason,
           "2 of 10 scans have no pose, first /points 1700000000.000000000: the transform odom -> lidar starts at "
           "1700000000.150000000"))
-      << scans->missingPoses();
+      << scans->missingPoses().reason;
   BagOptions options;
   options.max_time_gap = 0.06;
   EXPECT_TRUE(open(options)->info(1).pose);
@@ -262,9 +263,9 @@ TEST_F(BagScansTest, TakeNoPoseThatIsTooFarAwayInTime) {
   EXPECT_TRUE(scans->info(0).pose);
   EXPECT_FALSE(scans->info(2).pose);
   EXPECT_TRUE(
-      has(scans->missingPoses(),
+      has(scans->missingPoses().reason,
           "s from the nearest pose, at most 0.050000000 s are allowed. The poses are from 1699999999.950000000"))
-      << scans->missingPoses();
+      << scans->missingPoses().reason;
 }
 
 TEST_F(BagScansTest, LeaveOutPosesWithFaults) {
