@@ -7,7 +7,6 @@
 
 #include "io/messages/message_scans.h"
 #include "io/messages/ros_messages.h"
-#include "io/messages/timed_poses.h"
 
 namespace gaussmap::detail {
 namespace {
@@ -98,12 +97,11 @@ BagSummary bagSummary(const MessageFile& file, const std::filesystem::path& path
   std::vector<std::size_t> group_of(file.topics().size(), 0);
   for (std::size_t i = 0; i < groups.size(); ++i)
     for (const std::size_t topic : groups[i].indices) group_of[topic] = i;
-  std::vector<const MessagePlace*> first(groups.size(), nullptr);
-  std::vector<std::vector<std::chrono::nanoseconds>> times(groups.size());
+  std::vector<const MessagePlace*> first(groups.size(), nullptr), last(groups.size(), nullptr);
   for (const MessagePlace& message : file.messages()) {
     const std::size_t group = group_of.at(message.topic);
     if (!first[group]) first[group] = &message;
-    times[group].push_back(safeTime(message.log_time));
+    last[group] = &message;
   }
   BagSummary summary{file.kind(), {}, file.warnings()};
   for (std::size_t i = 0; i < groups.size(); ++i) {
@@ -112,9 +110,8 @@ BagSummary bagSummary(const MessageFile& file, const std::filesystem::path& path
     topic.type = groups[i].type;
     topic.messages = groups[i].messages;
     if (first[i]) {
-      topic.first = times[i].front();
-      topic.last = times[i].back();
-      topic.median_interval = medianInterval(std::move(times[i]));
+      topic.first = safeTime(first[i]->log_time);
+      topic.last = safeTime(last[i]->log_time);
       const MessageEncoding encoding = file.topics()[first[i]->topic].encoding;
       if (encoding != MessageEncoding::Other && hasHeader(topic.type)) {
         try {

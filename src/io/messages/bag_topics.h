@@ -46,7 +46,6 @@ struct BagTopicSummary {
   std::string name, type;
   std::size_t messages = 0;
   std::optional<std::chrono::nanoseconds> first, last;      ///< times of recording
-  std::optional<std::chrono::nanoseconds> median_interval;  ///< between messages
   std::string frame;                                        ///< frame_id of the first message; empty: unknown
 };
 

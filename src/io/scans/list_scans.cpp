@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "gaussmap/io/scans/file_scans.h"
+#include "io/formats/message_file.h"
 #include "io/scans/scan_names.h"
 
 namespace gaussmap {
@@ -24,6 +25,17 @@ std::string hintOfSubfolders(const std::filesystem::path& directory) {
       if (!scanExtension(file->path().filename()).empty())
         return ", but in its subdirectories: name them, for example " + (directory / "*").string() + "/" +
                file->path().filename().string();
+  }
+  return "";
+}
+
+/// Returns what to write if the scans may be texts. A directory can hold texts of other kinds, such as poses.
+std::string hintOfTexts(const std::filesystem::path& directory) {
+  std::error_code error;
+  for (std::filesystem::directory_iterator file(directory, error), end; !error && file != end; file.increment(error)) {
+    const std::string extension = file->path().extension().string();
+    if (extension == ".txt" || extension == ".csv" || extension == ".asc")
+      return "; if the " + extension + " files are scans, name them: " + (directory / "*").string() + extension;
   }
   return "";
 }
@@ -57,7 +69,9 @@ std::string countsOf(const FilesPerKind& files) {
 /// Returns the files of one kind. PCD files come before all others.
 std::vector<std::filesystem::path> scansIn(const std::filesystem::path& directory) {
   FilesPerKind files = filesIn(directory);
-  if (files.empty()) throw FileError(directory, "no file of scans in this directory" + hintOfSubfolders(directory));
+  if (files.empty())
+    throw FileError(directory, "no file of scans in this directory" + hintOfSubfolders(directory) +
+                                   hintOfTexts(directory));
   const auto pcds = files.find(".pcd");
   if (pcds == files.end() && files.size() > 1)
     throw FileError(directory, "holds files of several kinds: " + countsOf(files) +
@@ -78,7 +92,7 @@ std::vector<std::filesystem::path> listScans(const std::vector<std::filesystem::
     const std::filesystem::file_status status = std::filesystem::status(input, error);
     if (status.type() == std::filesystem::file_type::not_found) throw FileError(input, "does not exist");
     if (error) throw FileError(input, error.message());
-    if (std::filesystem::is_directory(status)) {
+    if (std::filesystem::is_directory(status) && !isMessageFile(input)) {
       const std::vector<std::filesystem::path> found = scansIn(input);
       scans.insert(scans.end(), found.begin(), found.end());
     } else {

@@ -26,6 +26,7 @@ namespace gaussmap::detail {
 namespace {
 
 constexpr std::size_t kStart = 4096;  // bytes that tell the kind of a file
+constexpr std::string_view kRosbag2Metadata = "rosbag2_bagfile_information";
 
 BagPoses bagPosesOf(const OpenOptions& options) {
   if (!options.needs_poses) return BagPoses::None;
@@ -78,6 +79,8 @@ std::shared_ptr<const ScanFile> openByName(const std::filesystem::path& path, st
   if (isMapFile(start)) throw FileError(path, "is a map, not a file of scans; gaussmap merge combines maps");
   if (const std::string kind = kindOfStart(start); !kind.empty())
     throw FileError(path, "is " + kind + ", not a file of scans");
+  if (start.substr(0, kRosbag2Metadata.size()) == kRosbag2Metadata)
+    throw FileError(path, "describes a recording of rosbag2; give the folder with the recording instead");
   if (looksLikeText(start)) return openCloudText(path);
   throw FileError(path,
                   "is of no kind that gaussmap reads (PCD, PLY, LAS, LAZ, E57, text, MCAP, bags of ROS); if it "

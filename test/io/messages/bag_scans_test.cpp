@@ -353,7 +353,6 @@ TEST_F(BagScansTest, HaveASummary) {
   EXPECT_EQ(points.name, "/points");
   EXPECT_EQ(points.messages, 10u);
   EXPECT_EQ(points.frame, "lidar");
-  EXPECT_NEAR(static_cast<double>(points.median_interval.value().count()), 1e8, 1e3);
   EXPECT_EQ(points.first.value().count(), 1700000000000000000);
   EXPECT_EQ(summary.topics[1].frame, "odom");
   EXPECT_EQ(summary.topics[2].frame, "");
