@@ -187,14 +187,17 @@ TEST_F(RecordingsApp, OfTwoClocksNeedTheTimesOfRecording) {
 
 TEST_F(RecordingsApp, WhoseSimulatedTimeStartsAgainAreNotMixed) {
   // The same times come twice, at different places.
-  buildTruth(kInMap);
-  const Outcome outcome = runApp(build({robot("clock_reset.mcap")}));
-  if (outcome.code == 0) {
-    EXPECT_TRUE(isTruth()) << outcome.err;
-  } else {
-    EXPECT_NE(outcome.err.find("--log-times"), std::string::npos) << outcome.err;
-  }
-  expectRight(kInMap, "clock_reset.mcap", {"--log-times"});
+  expectAdvice("--log-times", {robot("clock_reset.mcap")});
+  // Clouds and transforms are not recorded after equal delays, so the poses are a little off.
+  const auto boxOf = [](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"scans", "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return Json::parse(succeed(words))["box"];
+  };
+  const Json box = boxOf({robot("clock_reset.mcap"), "--log-times"}), truth = boxOf({robot("tf.mcap")});
+  for (const char* const corner : {"low", "high"})
+    for (int axis = 0; axis < 3; ++axis)
+      EXPECT_NEAR(box[corner][axis].get<double>(), truth[corner][axis].get<double>(), 0.1) << corner << axis;
 }
 
 TEST_F(RecordingsApp, WhoseTransformsLackTheLidarNeedAnExtrinsic) {
@@ -210,7 +213,9 @@ TEST_F(RecordingsApp, OfPointsInTheMapFrameTakeThePositionsOfTheSensorFromATopic
 
 TEST_F(RecordingsApp, InDifferentFramesAreNotMixed) {
   expectAdvice("--fixed-frame", {robot("tf.mcap"), robot("laser.mcap")});
-  succeed(build({robot("tf.mcap"), robot("laser.mcap"), "--fixed-frame", "odom"}));
+  const Outcome outcome = runApp(build({robot("tf.mcap"), robot("laser.mcap"), "--fixed-frame", "odom"}));
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("the map is wrong if they are different runs"), std::string::npos) << outcome.err;
 }
 
 TEST_F(RecordingsApp, PreferTheMapFrameOfARobotWithANamespace) {
@@ -292,10 +297,17 @@ std::vector<double> numbersIn(const std::string& path) {
 TEST_F(RecordingsApp, OfAPlanarLaserGiveSegments) {
   succeed({"segments", robot("laser.mcap"), "-o", own("segments.csv")});
   succeed(joined({"segments", "-o", own("truth.csv"), "--poses", robot("truth/laser_in_odom.tum")}, scansOf(kLaser)));
-  const std::vector<double> found = numbersIn(own("segments.csv")), truth = numbersIn(own("truth.csv"));
-  ASSERT_EQ(found.size(), truth.size());
-  EXPECT_GT(found.size(), 50u);
-  for (std::size_t i = 0; i < truth.size(); ++i) EXPECT_NEAR(found[i], truth[i], 1e-3) << i;
+  // The last digits of the poses differ, and the fit is random, so single ends of segments can differ.
+  const auto lengthIn = [this](const std::string& name) {
+    constexpr std::size_t kColumns = 13, kLength = 6;
+    const std::vector<double> numbers = numbersIn(own(name));
+    EXPECT_EQ(numbers.size() % kColumns, 0u);
+    double sum = 0.0;
+    for (std::size_t i = kLength; i < numbers.size(); i += kColumns) sum += numbers[i];
+    return sum;
+  };
+  EXPECT_GT(lengthIn("truth.csv"), 15.0);
+  EXPECT_NEAR(lengthIn("segments.csv"), lengthIn("truth.csv"), 0.5);
 }
 
 }  // namespace

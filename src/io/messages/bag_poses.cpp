@@ -116,8 +116,8 @@ class PoseAssigner {
   void sayWhyNone(const std::vector<TopicGroup>& topics, const std::string& still, const std::string& reason) {
     std::string &text = assigned_.missing.reason, &advice = assigned_.missing.advice;
     if (!topics.empty()) {
-      text = "no poses: several or other topics have poses: " + listTopics(topics);
-      advice = "choose that of the sensor, for example --poses " + shown(topics.front().name);
+      text = "no poses: it is not clear which topic gives the poses of the sensor: " + listTopics(topics);
+      advice = "choose one, for example --poses " + shown(topics.front().name);
       return;
     }
     text = "no poses: the recording has no odometry, and ";
@@ -187,6 +187,7 @@ class PoseAssigner {
     assigned_.in_fixed_frame = true;
     assigned_.map_frame = fixed;
     assigned_.source = "none needed: the points of " + topicText() + " are in the fixed frame " + shown(frame()) +
+                       ", the positions of the sensor are unknown" +
                        (fixed == frame() ? "" : ", moved to " + shown(fixed) + " by tf");
     fill(withChains(fixed));
   }

@@ -9,7 +9,7 @@
 namespace gaussmap::detail {
 
 /// A step back in the times of one topic that is larger than this does not come from a delay.
-inline constexpr std::chrono::milliseconds kMostStepBack{200};
+inline constexpr std::chrono::milliseconds kMostStepBack{100};
 /// What to do if the times of a recording step back.
 inline constexpr const char* kResetAdvice =
     " in the order of the recording (was the simulated time reset?); use --log-times, or split the recording";

@@ -19,20 +19,20 @@ bool fitsFloat(double value) {
 
 /// Returns true if a value is whole by its meaning, so that scans of one recording get the same type.
 bool isWhole(const std::string& name) {
-  static const std::set<std::string> kNames = {"rgb",
-                                               "ring",
-                                               "label",
-                                               "row",
-                                               "column",
-                                               "return_number",
-                                               "classification",
-                                               "number_of_returns",
-                                               "user_data",
-                                               "point_source_id",
-                                               "withheld",
-                                               "overlap",
-                                               "scanner_channel"};
-  return kNames.count(name) > 0;
+  static const std::set<std::string> kWholeNames = {"rgb",
+                                                    "ring",
+                                                    "label",
+                                                    "row",
+                                                    "column",
+                                                    "return_number",
+                                                    "classification",
+                                                    "number_of_returns",
+                                                    "user_data",
+                                                    "point_source_id",
+                                                    "withheld",
+                                                    "overlap",
+                                                    "scanner_channel"};
+  return kWholeNames.count(name) > 0;
 }
 
 bool fitsUnsigned(double value) {

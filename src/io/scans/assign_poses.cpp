@@ -135,7 +135,8 @@ void posesOfFiles(const std::vector<ScanPose>& scans, const FindScansOptions& op
   std::vector<std::string> sources, missing;
   for (std::size_t i = 0; i < scans.size(); ++i) {
     const ScanPose& scan = scans[i];
-    if (scan.in_map_frame) addOnce("none needed: the points are in the map frame", sources);
+    if (scan.in_map_frame && (!scan.file_poses || scan.file_poses->source.empty()))
+      addOnce("none needed: the points are in the map frame", sources);
     if (!scan.file_poses) continue;
     addOnce(scan.file_poses->source, sources);
     const MissingPoses& why = scan.file_poses->missing;
