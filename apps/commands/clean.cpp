@@ -57,6 +57,7 @@ std::vector<std::filesystem::path> copiesOf(const FileScans& scans) {
   for (std::size_t i = 0; i < file_of.size(); ++i) {
     std::filesystem::path& copy = copies.emplace_back(names[file_of[i]]);
     const FileScan& scan = scans.files()[i];
+    if (!scans.pcd(i)) copy.replace_extension(".pcd");
     if (scan.name.empty()) continue;
     std::string number = std::to_string(scan.index);
     number.insert(0, 6 - std::min<std::size_t>(6, number.size()), '0');

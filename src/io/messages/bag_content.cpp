@@ -149,6 +149,7 @@ class ContentReader {
     const nanoseconds time = timeOf(message, size.header.stamp, scans_without_stamp_);
     content_.scans.push_back({message, time, size.points, found->second});
     if (!size.has_range_limits) without_limits_.add(stampText(time));
+    if (size.has_unused_points) with_unused_.add(stampText(time));
   }
 
   /// Returns true if the pose can be used.
@@ -209,6 +210,9 @@ class ContentReader {
     if (other_frames_.count > 0)
       warnings.push_back("the frames of the poses change, first in " + other_frames_.first +
                          ". All poses are used as if they had the frames of the last one");
+    if (with_unused_.count > 0)
+      warnings.push_back(count(with_unused_) + " clouds have room for more points than their width says, first at " +
+                         with_unused_.first + ". The points behind are not read");
     if (without_limits_.count > 0)
       warnings.push_back(count(without_limits_) +
                          " laser scans have range_max not greater than range_min, so all ranges are used; first at " +
@@ -223,7 +227,7 @@ class ContentReader {
   std::vector<Use> uses_;               // of each topic
   std::vector<std::size_t> last_path_;  // number of the last message of each pose topic
   std::unordered_map<std::string, std::size_t> frames_;
-  Occurrences scans_without_stamp_, poses_without_stamp_, faulty_, loops_, without_limits_, other_frames_;
+  Occurrences scans_without_stamp_, poses_without_stamp_, faulty_, loops_, without_limits_, with_unused_, other_frames_;
   BagContent content_;
 };
 

@@ -136,6 +136,7 @@ class PoseAssigner {
     } else {
       text += "tf does not give the pose of " + shown(frame()) + (reason.empty() ? "" : ": " + reason);
     }
+    for (const std::string& warning : content_.warnings) text += "; " + warning;
   }
 
   /// Returns the frame whose poses tf gives.

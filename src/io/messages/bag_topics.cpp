@@ -99,6 +99,9 @@ TopicGroup chooseScanTopic(const std::filesystem::path& path, const MessageFile&
   }
   std::string text = "has no messages of sensor_msgs/PointCloud2 or sensor_msgs/LaserScan; its topics are " +
                      listTopics(topics) + packetHint(topics);
+  for (const TopicGroup& topic : topics)
+    if (isScanType(topic.type) && topic.messages > 0 && !topic.is_readable)
+      text += "; " + shown(topic.name) + " is written in an encoding that is not read (only CDR and that of ROS 1 are)";
   for (const std::string& warning : file.warnings()) text += "; " + warning;
   throw FileError(path, text);
 }

@@ -139,7 +139,7 @@ std::optional<TransformChain> TransformTree::chain(const std::string& target, co
   for (const std::size_t link : *down) chain.steps.push_back({link, true});
   for (auto link = up->rbegin(); link != up->rend(); ++link) chain.steps.push_back({*link, false});
   chain.moves = std::any_of(chain.steps.begin(), chain.steps.end(),
-                            [this](const TransformChain::Step& step) { return links_[step.link].poses.size() > 1; });
+                            [this](const TransformChain::Step& step) { return !links_[step.link].poses.isConstant(); });
   return chain;
 }
 

@@ -25,7 +25,7 @@ struct TransformChain {
     bool inverse = false;
   };
   std::vector<Step> steps;  ///< from the target to the source: the product of all of them maps source to target
-  bool moves = false;       ///< true: a transform is not static and has more than one time
+  bool moves = false;       ///< true: a transform has different values at different times
 };
 
 /// The tree of frames that the messages of /tf and /tf_static describe. Add all transforms, then call finish() once;

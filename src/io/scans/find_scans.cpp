@@ -11,6 +11,7 @@
 #include "gaussmap/io/scans/file_scans.h"
 #include "io/scans/assign_poses.h"
 #include "io/scans/keeping_points.h"
+#include "io/scans/list_scans.h"
 #include "io/scans/pose_checks.h"
 #include "io/scans/scan_files.h"
 #include "sensor/sensor_motion.h"
@@ -97,8 +98,8 @@ bool standsStill(FileScans& scans) {
 }  // namespace
 
 FoundScans findScans(const std::vector<std::filesystem::path>& inputs, const FindScansOptions& options) {
-  const std::vector<std::filesystem::path> paths = listScans(inputs);
   std::vector<std::string> warnings;
+  const std::vector<std::filesystem::path> paths = detail::listScans(inputs, warnings);
   warnOfScansGivenTwice(paths, warnings);
   ListedScans listed{std::make_shared<ScanFiles>(openOptions(options)), {}, {}, {}, {}, false};
   for (const std::filesystem::path& path : paths) addScansOf(path, listed);

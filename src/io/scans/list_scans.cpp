@@ -6,6 +6,7 @@
 
 #include "gaussmap/io/scans/file_scans.h"
 #include "io/formats/message_file.h"
+#include "io/scans/list_scans.h"
 #include "io/scans/scan_names.h"
 
 namespace gaussmap {
@@ -66,8 +67,8 @@ std::string countsOf(const FilesPerKind& files) {
   return text;
 }
 
-/// Returns the files of one kind. PCD files come before all others.
-std::vector<std::filesystem::path> scansIn(const std::filesystem::path& directory) {
+/// Returns the files of one kind. PCD files come before all others, then a warning says which files are not read.
+std::vector<std::filesystem::path> scansIn(const std::filesystem::path& directory, std::vector<std::string>& warnings) {
   FilesPerKind files = filesIn(directory);
   if (files.empty())
     throw FileError(directory,
@@ -77,6 +78,9 @@ std::vector<std::filesystem::path> scansIn(const std::filesystem::path& director
     throw FileError(directory, "holds files of several kinds: " + countsOf(files) +
                                    "; name those to read, for example " +
                                    (directory / ("*" + files.begin()->first)).string());
+  if (pcds != files.end() && files.size() > 1)
+    warnings.push_back(directory.string() + " holds files of several kinds: " + countsOf(files) +
+                       "; only the .pcd files are read");
   std::vector<std::filesystem::path> scans = std::move((pcds != files.end() ? pcds : files.begin())->second);
   std::sort(scans.begin(), scans.end(),
             [](const auto& a, const auto& b) { return naturalLess(a.filename().string(), b.filename().string()); });
@@ -86,6 +90,12 @@ std::vector<std::filesystem::path> scansIn(const std::filesystem::path& director
 }  // namespace
 
 std::vector<std::filesystem::path> listScans(const std::vector<std::filesystem::path>& inputs) {
+  std::vector<std::string> ignored;
+  return detail::listScans(inputs, ignored);
+}
+
+std::vector<std::filesystem::path> detail::listScans(const std::vector<std::filesystem::path>& inputs,
+                                                     std::vector<std::string>& warnings) {
   std::vector<std::filesystem::path> scans;
   for (const std::filesystem::path& input : inputs) {
     std::error_code error;
@@ -93,7 +103,7 @@ std::vector<std::filesystem::path> listScans(const std::vector<std::filesystem::
     if (status.type() == std::filesystem::file_type::not_found) throw FileError(input, "does not exist");
     if (error) throw FileError(input, error.message());
     if (std::filesystem::is_directory(status) && !isMessageFile(input)) {
-      const std::vector<std::filesystem::path> found = scansIn(input);
+      const std::vector<std::filesystem::path> found = scansIn(input, warnings);
       scans.insert(scans.end(), found.begin(), found.end());
     } else {
       scans.push_back(input);

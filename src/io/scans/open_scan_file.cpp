@@ -82,8 +82,9 @@ std::shared_ptr<const ScanFile> openGzip(const std::filesystem::path& path) {
   const std::string name = path.filename().string();
   if (name.find(".tar.") != std::string::npos || path.extension() == ".tgz")
     throw FileError(path, "is an archive (tar, gzip); expand it with tar xzf");
-  const std::string extension = scanExtension(path.stem());
-  if (extension.empty() || extension == ".pcd") return openPcd(path);
+  const std::string extension = scanExtension(path.stem()), inner = path.stem().extension().string();
+  const bool is_text = inner == ".txt" || inner == ".csv" || inner == ".asc";
+  if ((extension.empty() && !is_text) || extension == ".pcd") return openPcd(path);
   throw FileError(path, "is compressed with gzip; expand it with gunzip (only PCD files can stay compressed)");
 }
 
@@ -104,7 +105,10 @@ std::shared_ptr<const ScanFile> openByName(const std::filesystem::path& path, st
     throw FileError(path, "is " + kind + ", not a file of scans");
   if (start.substr(0, kRosbag2Metadata.size()) == kRosbag2Metadata)
     throw FileError(path, "describes a recording of rosbag2; give the folder with the recording instead");
-  if (looksLikeText(start)) return openCloudText(path);
+  const std::string lower = path.extension().string();
+  const bool is_named_text = lower == ".txt" || lower == ".csv" || lower == ".asc" || extension == ".xyz" ||
+                             extension == ".pts" || extension == ".ptx";
+  if (looksLikeText(start) || is_named_text || start[0] == '\xFF' || start[0] == '\xFE') return openCloudText(path);
   throw FileError(path,
                   "is of no kind that gaussmap reads (PCD, PLY, LAS, LAZ, E57, text, MCAP, bags of ROS); if it "
                   "holds raw numbers, name their fields: --fields \"x y z intensity\"");
