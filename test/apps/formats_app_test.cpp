@@ -54,7 +54,7 @@ TEST_F(FormatsApp, RecogniseAKindByItsContentNotByItsName) {
   }
   // Raw records have no signature, so their name counts.
   EXPECT_EQ(kindOf(formatsFile("same_scans/bin/000000.bin")), "raw records of KITTI, x:f32 y:f32 z:f32 intensity:f32");
-  expectDataError("is of no kind that gaussmap reads", {"scans", copy("same_scans/bin/000000.bin", "raw")});
+  expectDataError("is not a kind of file that gaussmap reads", {"scans", copy("same_scans/bin/000000.bin", "raw")});
 }
 
 TEST_F(FormatsApp, SayWhatAFileIsThatHoldsNoScans) {
@@ -71,13 +71,13 @@ TEST_F(FormatsApp, TakeTheFilesOfOneKindOfADirectory) {
   fs::create_directory(own("mixed"));
   copy("same_scans/ply/000000.ply", "mixed/a.ply");
   copy("same_scans/las/000000.las", "mixed/b.las");
-  expectDataError("holds files of several kinds: .las (1 file), .ply (1 file); name those to read",
+  expectDataError("holds files of several kinds: .las (1 file), .ply (1 file); give the files to read",
                   {"scans", own("mixed")});
   copy("same_scans/pcd/000000.pcd", "mixed/c.pcd");
   EXPECT_EQ(kindOf(own("mixed")), "PCD binary");
   fs::create_directory(own("texts"));
   copy("text/plain.xyz", "texts/a.txt");
-  expectDataError("if the .txt files are scans, name them: ", {"scans", own("texts")});
+  expectDataError("if the .txt files are scans, give them: ", {"scans", own("texts")});
 }
 
 TEST_F(FormatsApp, UseTheFieldsThatAreGiven) {
@@ -94,7 +94,7 @@ TEST_F(FormatsApp, UseTheFieldsThatAreGiven) {
   EXPECT_EQ(json["points"]["accepted"], 4);
   EXPECT_EQ(json["box"]["high"], Json({3.0, 0.5, 0.0}));
   expectUsageError("--fields: ", {"scans", file, "--fields", "x y"});
-  expectDataError("fields can be given only for texts and raw records",
+  expectDataError("only text files and raw records (.bin) have fields to name",
                   {"scans", formatsFile("same_scans/las/000000.las"), "--fields", "x y z"});
 }
 

@@ -297,7 +297,7 @@ const std::vector<Row>& rows() {
          return t.build(t.cloud("a.pcd", T::seen(0)), {"--min-range", "90"});
        }},
       // Files and options
-      {"but in its subdirectories: name them",
+      {"but its subdirectories have some: give them",
        [](const T& t) {
          fs::create_directories(t.own("dump/000000"));
          t.cloud("dump/000000/cloud.pcd", T::seen(0));

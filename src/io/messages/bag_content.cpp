@@ -104,8 +104,8 @@ class ContentReader {
       content_.pose_topics.back().topic = group;
     }
     if (!is_found)
-      throw FileError(path_, "has no topic " + shown(options_.pose_topic) + " with poses; the topics with poses are " +
-                                 listTopics(known));
+      throw FileError(
+          path_, "has no topic " + shown(options_.pose_topic) + " with poses; topics with poses: " + listTopics(known));
   }
 
   // Each message of a nav_msgs/Path holds all poses so far.
@@ -212,7 +212,7 @@ class ContentReader {
                          ". All poses are used as if they had the frames of the last one");
     if (with_unused_.count > 0)
       warnings.push_back(count(with_unused_) + " clouds have room for more points than their width says, first at " +
-                         with_unused_.first + ". The points behind are not read");
+                         with_unused_.first + ". The points after the width are not read");
     if (without_limits_.count > 0)
       warnings.push_back(count(without_limits_) +
                          " laser scans have range_max not greater than range_min, so all ranges are used; first at " +

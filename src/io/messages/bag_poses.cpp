@@ -92,7 +92,7 @@ class PoseAssigner {
     if (chain && chain->moves && (isFixed(fixed, odometry) || odometry.empty())) {
       if (!isFixed(fixed, odometry))
         warn(shown(fixed) + " is taken as the fixed frame, because tf has no frame map or odom above " + shown(used) +
-             "; if it is on the robot, the recording has no poses");
+             "; if it moves with the robot, the poses are wrong: give others with --poses FILE");
       return fromTransforms();
     }
     if (odometry.size() == 1) return fromTopic(*odometry.front());
@@ -125,12 +125,12 @@ class PoseAssigner {
     if (tree_.empty()) {
       text += "no tf";
     } else if (!still.empty()) {
-      text += "the transform from " + shown(frame()) + " to " + shown(still) + " in tf does not move";
+      text += "the transform from " + shown(frame()) + " to " + shown(still) + " in tf never changes";
       advice += ", or --poses tf if the sensor did not move";
     } else if (!tree_.has(frame())) {
       text += "no transform in tf has the frame " + frameText() + " (the frames are " + tree_.frames() + ")";
       advice =
-          "if one of these frames carries the sensor, give it and the pose of the sensor in it: --poses tf "
+          "if the sensor is mounted on one of these frames, give it and the pose of the sensor in it: --poses tf "
           "--pose-frame NAME --extrinsic \"x y z qx qy qz qw\"; or " +
           advice;
     } else {
@@ -154,14 +154,15 @@ class PoseAssigner {
     if (isFixedFrame(frame()) && !options_.points_in_map) return inFixedFrame();
     std::string reason;
     if (fixed.empty())
-      reason = tree_.empty() ? "the recording has no messages of tf"
-                             : "no transform has the frame " + frameText() + "; the frames are " + tree_.frames() +
-                                   "; if one of them carries the sensor, use --pose-frame NAME --extrinsic \"x y z qx "
-                                   "qy qz qw\"";
+      reason = tree_.empty()
+                   ? "the recording has no messages of tf"
+                   : "no transform has the frame " + frameText() + "; the frames are " + tree_.frames() +
+                         "; if the sensor is mounted on one of them, use --pose-frame NAME --extrinsic \"x y z qx "
+                         "qy qz qw\"";
     const std::optional<TransformChain> chain = fixed.empty() ? std::nullopt : tree_.chain(fixed, used, reason);
     if (!chain) fail("tf gives no poses for " + topicText() + ": " + reason);
     if (used != frame() && !options_.has_extrinsic && !options_.points_in_map)
-      fail("--pose-frame " + shown(used) + ": tf does not say where " + frameText() + " is on it; " +
+      fail("--pose-frame " + shown(used) + ": tf does not give the pose of " + frameText() + " in this frame; " +
            extrinsicAdvice(used));
     if (chain->steps.empty() && options_.fixed_frame.empty()) fail("tf has no frame above " + frameText());
     if (chain->steps.empty())
@@ -171,7 +172,7 @@ class PoseAssigner {
     assigned_.map_frame = fixed;
     if (!chain->moves && content_.scans.size() > 1)
       warn("the transform from " + shown(used) + " to " + shown(fixed) +
-           " does not move, so all scans have the same pose");
+           " never changes, so all scans have the same pose");
     pose_times_ = tree_.timesOf(*chain);
     fill(used == frame() ? withChains(fixed) : withChain(*chain));
   }
@@ -188,8 +189,8 @@ class PoseAssigner {
     assigned_.in_fixed_frame = true;
     assigned_.map_frame = fixed;
     assigned_.source = "none needed: the points of " + topicText() + " are in the fixed frame " + shown(frame()) +
-                       ", the positions of the sensor are unknown" +
-                       (fixed == frame() ? "" : ", moved to " + shown(fixed) + " by tf");
+                       (fixed == frame() ? "" : " (tf moves them to " + shown(fixed) + ")") +
+                       "; the positions of the sensor are unknown";
     fill(withChains(fixed));
   }
 
@@ -236,8 +237,8 @@ class PoseAssigner {
     const bool is_moved = is_connected && child != frame() && !options_.has_extrinsic;
     if (!child.empty() && !is_connected && !options_.has_extrinsic)
       fail(name + " gives the poses of " + shown(child) + ", but " +
-           (tree_.empty() ? "the recording has no tf that says" : "tf does not say") + " where " + frameText() +
-           " is on it" + (tree_.empty() ? "" : " (the frames of tf are " + tree_.frames() + ")") + "; " +
+           (tree_.empty() ? "the recording has no tf that gives" : "tf does not give") + " the pose of " + frameText() +
+           " in " + shown(child) + (tree_.empty() ? "" : " (the frames of tf are " + tree_.frames() + ")") + "; " +
            extrinsicAdvice(child));
     const std::string fixed = options_.fixed_frame.empty() ? topic.parent : frameName(options_.fixed_frame);
     const std::optional<TransformChain> to_fixed = tree_.chain(fixed, topic.parent, reason);
@@ -336,8 +337,8 @@ class PoseAssigner {
       const std::optional<Pose> pose = topic.poses.at(scan.time, limits, lookup);
       if (!pose) {
         lookup.reason = "its time is " + stampText(topic.poses.distance(scan.time)) +
-                        " s from the nearest pose, at most " + stampText(limits.hold) +
-                        " s are allowed. The poses are from " + stampText(topic.poses.first()) + " to " +
+                        " s from the nearest pose, but the limit is " + stampText(limits.hold) +
+                        " s; the times of the poses are " + stampText(topic.poses.first()) + " to " +
                         stampText(topic.poses.last());
         return std::nullopt;
       }
@@ -369,7 +370,7 @@ class PoseAssigner {
     if (held > 0)
       warn(std::to_string(held) + " of " + std::to_string(content_.scans.size()) +
            (held == 1 ? " scans has" : " scans have") + " the pose of another time, at most " + stampText(farthest) +
-           " s away, because there is no pose before and after");
+           " s away, because a pose before or after them is missing or too far away");
     if (missing > 0) sayMissing(missing, first, is_outside);
   }
 

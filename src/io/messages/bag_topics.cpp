@@ -77,15 +77,15 @@ TopicGroup chooseScanTopic(const std::filesystem::path& path, const MessageFile&
     for (const TopicGroup& topic : topics)
       if (withoutSlash(topic.name) == withoutSlash(name)) named.push_back(topic);
     if (named.empty())
-      throw FileError(
-          path, "has no topic " + shown(name) + "; the topics with scans are " + listTopics(scanTopics(topics, "")));
+      throw FileError(path,
+                      "has no topic " + shown(name) + "; topics with scans: " + listTopics(scanTopics(topics, "")));
     const auto usable = std::find_if(named.begin(), named.end(), [](const TopicGroup& topic) {
       return isScanType(topic.type) && topic.is_readable;
     });
     if (usable == named.end())
       throw FileError(path, "topic " + listTopics(named) +
-                                " holds no scans that gaussmap can read, expected sensor_msgs/PointCloud2 or "
-                                "sensor_msgs/LaserScan; the topics with scans are " +
+                                " holds no scans that gaussmap reads, expected sensor_msgs/PointCloud2 or "
+                                "sensor_msgs/LaserScan; topics with scans: " +
                                 listTopics(scanTopics(topics, "")));
     if (usable->messages == 0) throw FileError(path, "topic " + shown(usable->name) + " has no messages");
     return *usable;
@@ -97,11 +97,13 @@ TopicGroup chooseScanTopic(const std::filesystem::path& path, const MessageFile&
       throw FileError(path, "has several topics with scans: " + listTopics(found) + "; choose one with --topic " +
                                 shown(found.front().name));
   }
-  std::string text = "has no messages of sensor_msgs/PointCloud2 or sensor_msgs/LaserScan; its topics are " +
-                     listTopics(topics) + packetHint(topics);
+  std::string text =
+      "has no messages of sensor_msgs/PointCloud2 or sensor_msgs/LaserScan; topics: " + listTopics(topics) +
+      packetHint(topics);
   for (const TopicGroup& topic : topics)
     if (isScanType(topic.type) && topic.messages > 0 && !topic.is_readable)
-      text += "; " + shown(topic.name) + " is written in an encoding that is not read (only CDR and that of ROS 1 are)";
+      text +=
+          "; " + shown(topic.name) + " has an encoding that gaussmap does not read (it reads CDR of ROS 2, and ROS 1)";
   for (const std::string& warning : file.warnings()) text += "; " + warning;
   throw FileError(path, text);
 }

@@ -163,7 +163,8 @@ std::optional<Pose> TransformTree::pose(const TransformChain& chain, std::chrono
         lookup.reason += std::string(is_before ? " starts at " : " ends at ") +
                          stampText(is_before ? link.poses.first() : link.poses.last());
       else
-        lookup.reason += " has a gap there: the nearest is " + stampText(link.poses.distance(time)) + " s away";
+        lookup.reason +=
+            " has a gap at this time: its nearest value is " + stampText(link.poses.distance(time)) + " s away";
       return std::nullopt;
     }
     product = product * (step.inverse ? one->inverse() : *one);

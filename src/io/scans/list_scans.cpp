@@ -24,7 +24,7 @@ std::string hintOfSubfolders(const std::filesystem::path& directory) {
     for (std::filesystem::directory_iterator file(folder->path(), ignored), last; !ignored && file != last;
          file.increment(ignored))
       if (!scanExtension(file->path().filename()).empty())
-        return ", but in its subdirectories: name them, for example " + (directory / "*").string() + "/" +
+        return ", but its subdirectories have some: give them, for example " + (directory / "*").string() + "/" +
                file->path().filename().string();
   }
   return "";
@@ -36,7 +36,7 @@ std::string hintOfTexts(const std::filesystem::path& directory) {
   for (std::filesystem::directory_iterator file(directory, error), end; !error && file != end; file.increment(error)) {
     const std::string extension = file->path().extension().string();
     if (extension == ".txt" || extension == ".csv" || extension == ".asc")
-      return "; if the " + extension + " files are scans, name them: " + (directory / "*").string() + extension;
+      return "; if the " + extension + " files are scans, give them: " + (directory / "*").string() + extension;
   }
   return "";
 }
@@ -76,7 +76,7 @@ std::vector<std::filesystem::path> scansIn(const std::filesystem::path& director
   const auto pcds = files.find(".pcd");
   if (pcds == files.end() && files.size() > 1)
     throw FileError(directory, "holds files of several kinds: " + countsOf(files) +
-                                   "; name those to read, for example " +
+                                   "; give the files to read, for example " +
                                    (directory / ("*" + files.begin()->first)).string());
   if (pcds != files.end() && files.size() > 1)
     warnings.push_back(directory.string() + " holds files of several kinds: " + countsOf(files) +

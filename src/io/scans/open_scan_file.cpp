@@ -72,7 +72,8 @@ std::shared_ptr<const ScanFile> openRecording(const std::filesystem::path& path,
 std::shared_ptr<const ScanFile> openWithFields(const std::filesystem::path& path, std::string_view start,
                                                const std::string& fields) {
   if (const std::string kind = kindOfStart(start); !kind.empty())
-    throw FileError(path, "is " + kind + ": fields can be given only for texts and raw records, as in .bin files");
+    throw FileError(path,
+                    "is " + kind + ": only text files and raw records (.bin) have fields to name; leave out --fields");
   if (start.empty() || looksLikeText(start) || isCloudText(start)) return openCloudText(path, {fields});
   return openFloatRecords(path, {fields});
 }
@@ -110,8 +111,8 @@ std::shared_ptr<const ScanFile> openByName(const std::filesystem::path& path, st
                              extension == ".pts" || extension == ".ptx";
   if (looksLikeText(start) || is_named_text || start[0] == '\xFF' || start[0] == '\xFE') return openCloudText(path);
   throw FileError(path,
-                  "is of no kind that gaussmap reads (PCD, PLY, LAS, LAZ, E57, text, MCAP, bags of ROS); if it "
-                  "holds raw numbers, name their fields: --fields \"x y z intensity\"");
+                  "is not a kind of file that gaussmap reads (PCD, PLY, LAS, LAZ, E57, text, MCAP, bags of ROS); if it "
+                  "holds raw numbers, name their fields, for example with --fields \"x y z intensity\"");
 }
 
 }  // namespace

@@ -14,8 +14,8 @@ namespace {
 // Earth-centred coordinates are below 1e7 m, so a position beyond this is not in metres.
 constexpr double kFarthest = 1e8;
 constexpr const char* kWayOut =
-    "Give each scan its pose in the VIEWPOINT of its header or with --poses FILE, or use --frame map if "
-    "the points are already in the map frame.";
+    "Give each scan its pose, with --poses FILE or as VIEWPOINT of a PCD file, or use --frame map if the points are "
+    "already in the map frame.";
 
 std::string describe(const Pose& pose) {
   std::ostringstream text;

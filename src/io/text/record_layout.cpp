@@ -173,9 +173,10 @@ std::vector<PointField> guessRecord(const std::filesystem::path& path, std::stri
   const std::string kitti = misfit(kKitti, bytes);
   const std::string nuscenes = misfit(kNuScenes, bytes);
   if (!kitti.empty() && !nuscenes.empty())
-    throw FileError(path, "no kind of file is known by its first bytes, and " + std::to_string(bytes.size()) +
-                              " bytes of raw floats do not fit either: as 4 floats per point, " + kitti +
-                              "; as 5 floats, " + nuscenes +
+    throw FileError(path, "its first bytes are not those of a known kind of file, and its " +
+                              std::to_string(bytes.size()) +
+                              " bytes are not raw floats: with 4 floats per point (KITTI), " + kitti +
+                              "; with 5 (nuScenes), " + nuscenes +
                               "; if these are raw records, name the fields, for example with --fields \"x y z "
                               "intensity\" or --fields \"x y z intensity ring:u16 time:f64\"");
   const bool both = kitti.empty() && nuscenes.empty();

@@ -149,14 +149,14 @@ TEST_F(BagScansTest, NeedAnExtrinsicIfNothingSaysWhereTheSensorIs) {
   odometry("/odom", "odom", "base_link");
   expectComplaint(
       complaint({}), "drive.bag",
-      {"/odom gives the poses of base_link, but the recording has no tf that says where lidar is on it; give "
-       "its pose in base_link with --extrinsic"});
+      {"/odom gives the poses of base_link, but the recording has no tf that gives the pose of lidar in base_link; "
+       "give its pose in base_link with --extrinsic"});
   BagOptions options;
   options.has_extrinsic = true;  // the caller moves the poses
   expectMotion(*open(options), 0.05);
   staticTransform("base_link", "camera", poseAt(1.0));
   expectComplaint(complaint({}), "drive.bag",
-                  {"tf does not say where lidar is on it (the frames of tf are base_link, camera)"});
+                  {"tf does not give the pose of lidar in base_link (the frames of tf are base_link, camera)"});
 }
 
 TEST_F(BagScansTest, ReplaceTheTransformOfTfByAnExtrinsic) {
@@ -175,7 +175,7 @@ TEST_F(BagScansTest, TakeThePosesOfAFrameOfTfIfTheScansHaveNone) {
   EXPECT_TRUE(has(open()->missingPoses().advice, "--poses tf --pose-frame NAME --extrinsic"));
   BagOptions options = fromTf();
   options.pose_frame = "base_link";
-  expectComplaint(complaint(options), "drive.bag", {"tf does not say where velodyne is on it", "--extrinsic"});
+  expectComplaint(complaint(options), "drive.bag", {"tf does not give the pose of velodyne in ", "--extrinsic"});
   options.has_extrinsic = true;
   EXPECT_EQ(open(options)->poseSource(), "tf: base_link in odom");
   expectMotion(*open(options), 0.05);
@@ -289,7 +289,7 @@ TEST_F(BagScansTest, LeavePointsInAFixedFrameWhereTheyAre) {
     const auto scans = open();
     EXPECT_EQ(scans->info(5).pose.value().translation.norm(), 0.0);
     EXPECT_EQ(scans->poseSource(),
-              "none needed: the points of /cloud_registered are in the fixed frame camera_init, the positions of "
+              "none needed: the points of /cloud_registered are in the fixed frame camera_init; the positions of "
               "the sensor are unknown");
     EXPECT_TRUE(scans->inMapFrame());
     EXPECT_EQ(warningsOf(*scans), "");
@@ -330,7 +330,7 @@ TEST_F(BagScansTest, SayWhyThereAreNoPoses) {
   EXPECT_TRUE(
       has(open()->missingPoses().reason, "no transform in tf has the frame lidar (the frames are base_link, velodyne"));
   staticTransform("map", "lidar", Pose());
-  EXPECT_TRUE(has(open()->missingPoses().reason, "the transform from lidar to map in tf does not move"));
+  EXPECT_TRUE(has(open()->missingPoses().reason, "the transform from lidar to map in tf never changes"));
   const auto scans = open(fromTf());
   EXPECT_TRUE(scans->info(0).pose);
   EXPECT_TRUE(has(warningsOf(*scans), "all scans have the same pose"));
@@ -367,7 +367,7 @@ TEST_F(BagScansTest, TakeNoPoseThatIsTooFarAwayInTime) {
   EXPECT_FALSE(scans->info(2).pose);
   EXPECT_TRUE(
       has(scans->missingPoses().reason,
-          "s from the nearest pose, at most 0.050000000 s are allowed. The poses are from 1699999999.950000000"))
+          "s from the nearest pose, but the limit is 0.050000000 s; the times of the poses are 1699999999.950000000"))
       << scans->missingPoses().reason;
 }
 
@@ -420,7 +420,7 @@ TEST_F(BagScansTest, AskForATopicIfSeveralHaveScans) {
   options.topic = "/empty";
   expectComplaint(complaint(options), "drive.bag", {"topic /empty has no messages"});
   options.topic = "/none";
-  expectComplaint(complaint(options), "drive.bag", {"has no topic /none; the topics with scans are /front/points"});
+  expectComplaint(complaint(options), "drive.bag", {"has no topic /none; topics with scans: /front/points"});
 }
 
 TEST_F(BagScansTest, TakeALaserIfThereIsNoCloud) {
@@ -433,9 +433,8 @@ TEST_F(BagScansTest, TakeALaserIfThereIsNoCloud) {
   EXPECT_EQ(open()->kind(), "memory, sensor_msgs/LaserScan");
   bag_ = std::make_unique<test::MemoryMessages>();
   bag_->addTopic("/velodyne_packets", "velodyne_msgs/VelodyneScan", MessageEncoding::Other);
-  expectComplaint(
-      complaint({}), "drive.bag",
-      {"has no messages of sensor_msgs/PointCloud2 or sensor_msgs/LaserScan; its topics are /velodyne_packets"});
+  expectComplaint(complaint({}), "drive.bag",
+                  {"has no messages of sensor_msgs/PointCloud2 or sensor_msgs/LaserScan; topics: /velodyne_packets"});
 }
 
 TEST_F(BagScansTest, NameTheMessageThatIsDamaged) {

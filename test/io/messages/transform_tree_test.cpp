@@ -86,7 +86,7 @@ TEST_F(TransformTreeTest, DoesNotExtrapolateOrBridgeGaps) {
   EXPECT_FALSE(pose("odom", "base", 3002));
   EXPECT_TRUE(explains("ends at 3.000000000")) << reason_;
   EXPECT_FALSE(pose("odom", "base", 1300));
-  EXPECT_TRUE(explains("has a gap there: the nearest is 0.200000000 s away")) << reason_;
+  EXPECT_TRUE(explains("has a gap at this time: its nearest value is 0.200000000 s away")) << reason_;
   expectNear(pose("odom", "base", 3000), poseAt(2.0));
   expectNear(pose("odom", "base", 1101), poseAt(1.0));
 }
