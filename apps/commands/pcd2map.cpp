@@ -21,7 +21,7 @@ const Help kPcd2mapHelp = {
 ROS 1). The pose of a scan is that in its file: VIEWPOINT, the pose in an E57 or PTX file, tf or odometry of a
 recording. --poses replaces it: TUM (t x y z qx qy qz qw), KITTI (12 numbers), CSV with a header line, and others.
 Poses are matched to scans by name, time or number, else by order. gaussmap scans shows the result. With --frame map,
-the points are already in the map frame. The points of LAS and LAZ files always are, unless --poses is given.
+the points are already in the map frame. gaussmap assumes the same for LAS and LAZ files, unless --poses is given.
 
 --update adds scans to a map file and writes only the tiles that change. The finest scale then equals that of a map
 of all scans. Coarse cells with new points are rebuilt within --budget (default: the budget of the last refinement,

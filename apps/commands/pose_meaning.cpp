@@ -38,7 +38,7 @@ std::string conditionOf(PoseConvention better) {
     case PoseConvention::Camera:
       return "if the poses are those of a camera (x right, y down, z forward) on a lidar";
     case PoseConvention::Optical:
-      return "if the points have the axes of a camera (x right, y down, z forward) and the poses those of its carrier";
+      return "if the points have the axes of a camera (x right, y down, z forward) and the poses those of a robot";
   }
   return "";
 }
@@ -60,8 +60,8 @@ void addPoseMeaning(Command& command, PoseMeaning& meaning) {
   command
       .choiceOf("--pose-convention", meaning.convention, kConventionNames,
                 R"(what the poses mean: sensor-to-map, or inverse (map to sensor), w-first and w-last (order of the
-          quaternion, if it is not the usual one), camera (poses of a camera on a lidar, as in KITTI), optical
-          (poses of the carrier of a camera))")
+          quaternion, if it is not the usual one), camera (poses of a camera, points of a lidar, as in
+          KITTI), optical (poses of a robot, points of a camera))")
       .rare();
   command
       .flag("!--no-pose-check", meaning.check,

@@ -11,25 +11,28 @@ namespace gaussmap::app {
 void addFileOptions(Command& command, FileOptions& options) {
   command
       .text("--fields", options.fields,
-            R"(names of the columns of a text, or of the values of a .bin file: "x y z intensity ring:u16"; "-" skips
-            a column, "x:mm" and "time:ns" give units)")
+            R"(names of the columns of a text file, or names and types of the fields of a .bin file: "x y z intensity
+            ring:u16"; "-" skips one, "x:mm" and "time:ns" give units)")
       .rare();
   const char* const kHeading = "Recordings of ROS (MCAP, db3, bag)";
   RecordingOptions& recording = options.recording;
   command
-      .text("--topic", recording.topic, "topic of the scans; default: the only one of PointCloud2, else of LaserScan")
+      .text("--topic", recording.topic,
+            "topic with the scans; default: the only topic of type PointCloud2, or else of LaserScan")
       .group(kHeading);
   command
-      .text("--fixed-frame", recording.fixed_frame,
-            "frame that becomes the map frame; default: in tf map, else odom; of a topic of poses its frame_id")
+      .text(
+          "--fixed-frame", recording.fixed_frame,
+          "frame that becomes the map frame; default: for poses from tf: map, or else odom; from a topic: its frame_id")
       .group(kHeading);
   command
       .text("--pose-frame", recording.pose_frame,
-            "frame whose poses the topic of --poses gives; default: its child_frame_id, else the frame of the scans")
+            "frame whose poses --poses gives, for example base_link; default: child_frame_id of the topic, or else the "
+            "frame of the scans")
       .group(kHeading);
   command
       .flag("--log-times", recording.log_times,
-            "use the times at which messages were recorded, not those in their headers")
+            "use the times at which the messages were recorded, not the times in their headers")
       .group(kHeading);
 }
 

@@ -32,8 +32,7 @@ The search for a scan starts at its own pose, from --poses or its file (VIEWPOIN
 part of the scan lies on the map from there, it starts again from the pose found for the scan before, moved by the
 motion between the own poses of the two scans. With --guess, the first scan starts at the guess, and each other scan
 starts from the scan before in this way. Poses in files that are the same for all scans, or the identity for several
-scans, do not count.
-A scan without an own pose starts at the pose found for the scan before.
+scans, are ignored. A scan without a pose of its own starts at the pose found for the scan before.
 
 A scan without usable points, a damaged file, or a scan that is not found on the map, gets a line on stderr, and the
 others are registered. The exit code is then 1.
@@ -208,8 +207,8 @@ void addRegister(CLI::App& app) {
                   "pose at which the search for the first scan starts: x y z [m] qx qy qz qw");
   addPoseOptions(command, options->input);
   command.text("--tum", options->tum,
-               "TUM file to write, one line per scan: time, x y z [m] qx qy qz qw; the time is that in the name of the "
-               "scan, or else the number in its name, or else 0, 1, 2 ...");
+               "TUM file to write, one line per scan: time, x y z [m] qx qy qz qw; the time is that of the scan "
+               "(in its name or its file), or else the number in its name, or else 0, 1, 2 ...");
   command.force(options->force, "replace an existing file of poses");
   command
       .number("--scan-resolution", options->options.resolution, 0.0, 1e6,

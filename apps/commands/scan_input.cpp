@@ -42,8 +42,10 @@ void addPoseOptions(Command& command, ScanInput& input) {
             columns), or the columns in quotes: "time x y z qw qx qy qz")")
       .rare();
   command
-      .choice("--match-poses", input.match_poses, {"auto", "name", "index", "time", "order"},
-              "how scans and poses belong together")
+      .choice(
+          "--match-poses", input.match_poses, {"auto", "name", "index", "time", "order"},
+          "how poses are matched to scans: by name, by number in the name (index), by time, or in order; auto decides "
+          "from the names and the poses")
       .rare();
   command
       .number("--max-time-gap", input.max_time_gap, 0.0, 1e9,

@@ -37,7 +37,7 @@ std::size_t ChunkStore::add(const Chunk& chunk) {
     constexpr std::uint64_t kAlways = kMostKeptBytes, kTimes = 200;
     total_ += chunk.size;  // cannot overflow, because each chunk is limited
     if (total_ > kAlways + kTimes * file().size())
-      refuse("all chunks together have more than 512 MiB and 200 times the size of the file");
+      refuse("all chunks together have more than 512 MiB plus 200 times the size of the file");
   }
   chunks_.push_back(chunk);
   return chunks_.size() - 1;

@@ -103,9 +103,9 @@ std::vector<std::string> warningsOf(const std::vector<SampledScan>& scans, doubl
   if (first_rounded != nullptr) {
     text << first_rounded->path.string() << andMore(rounded) << ": the coordinates are rounded to steps of " << step
          << " m, because they are 32-bit floats far from the origin; the side of a cell is " << resolution << " m. "
-         << (first_rounded->is_ascii
-                 ? "Change SIZE of x y z to 8 in the header if the text has more digits"
-                 : "Write the points again from their source, as doubles (F 8) or relative to a VIEWPOINT near them");
+         << (first_rounded->is_ascii ? "Change SIZE of x y z to 8 in the header if the text has more digits"
+                                     : "Write the points again from their source, as doubles (in PCD files: SIZE 8) or "
+                                       "relative to a pose near them");
     warnings.push_back(text.str());
   }
   if (first_millimetres != nullptr) {
@@ -118,8 +118,9 @@ std::vector<std::string> warningsOf(const std::vector<SampledScan>& scans, doubl
     text.precision(3);
     text << first_millimetres->path.string() << andMore(millimetres) << ": the points spread over "
          << high.x() - low.x() << " x " << high.y() - low.y() << " x " << high.z() - low.z()
-         << " m. Are the coordinates millimetres? Gaussmap expects metres: multiply x y z by 0.001, for example with "
-            "pcl_transform_point_cloud IN.pcd OUT.pcd -scale 0.001,0.001,0.001";
+         << " m. Are the coordinates millimetres? Gaussmap expects metres: multiply x y z by 0.001. For PCD files, use "
+            "pcl_transform_point_cloud IN.pcd OUT.pcd -scale 0.001,0.001,0.001; for text files and raw records, use "
+            "--fields \"x:mm y:mm z:mm\"";
     warnings.push_back(text.str());
   }
   return warnings;

@@ -101,7 +101,9 @@ class HeadReader {
     if (const std::string_view word = decimalComma(words, separator); !word.empty())
       rows_.fail(place_.line, quote(word) + " has a decimal comma: write decimals with a point (1.5, not 1,5)");
     if (head_.names.empty() && namesDegrees(words))
-      rows_.fail(place_.line, "names degrees, but a map needs metres: convert the coordinates to a projected system");
+      rows_.fail(place_.line,
+                 "names latitude and longitude in degrees, but a map needs metres: convert the file to "
+                 "a projected coordinate system, for example UTM");
     if (head_.names.empty() || words.size() < 2)
       rows_.fail(place_.line, notANumber(*text) + ", and the line does not name columns x, y and z" +
                                   (fields_.empty() ? "; name the columns with --fields \"x y z intensity\"" : ""));

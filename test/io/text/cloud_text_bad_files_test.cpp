@@ -106,7 +106,7 @@ TEST_F(BadCloudTexts, ColumnsThatAreCertainlyNotXAreRefused) {
   }
   for (const char* const unclear : {"1 2 3 4 5\n", "1 2 3 5.5 -6 7\n", "1 2 3 5 6 7 1000\n", "1 2 3 4 5 6 7\n"})
     expectRefused(unclear, {"columns without names; name the columns, for example with --fields"});
-  expectRefused("lat,lon,alt\n52.1,13.2,30\n", {"names degrees, but a map needs metres"});
+  expectRefused("lat,lon,alt\n52.1,13.2,30\n", {"in degrees, but a map needs metres"});
   expectRefused(relative, {"column 1 grows from row to row"});
   expectRefused(classes, {"column 1 holds whole numbers like an index or a class"});
   expectRefused("1.5 2.5 3.5 0.5\n2.5 2.5 3.5 -0.25\n", {"the last one is negative in places"});
