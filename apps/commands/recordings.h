@@ -10,7 +10,7 @@
 
 namespace gaussmap::app {
 
-/// Adds --fields, --topic and the other options that say what files alone do not say.
+/// Adds --fields, and --topic and the other options for recordings.
 void addFileOptions(Command& command, FileOptions& options);
 
 /// Returns the recordings of ROS among the inputs: files, and folders with metadata.yaml.
@@ -18,7 +18,7 @@ std::vector<std::filesystem::path> recordingsIn(const std::vector<std::string>& 
 
 /// Returns true if the value of --poses is "tf" or a topic, not a file.
 bool namesTopic(const std::string& poses);
-/// Returns true if the value of --poses is not a file, but would be the name of a topic with a slash in front.
+/// Returns true if the value of --poses is not a file, but becomes the name of a topic if a slash is put in front.
 bool lacksSlash(const std::string& poses);
 
 }  // namespace gaussmap::app

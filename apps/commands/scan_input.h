@@ -30,7 +30,7 @@ struct ScanInput {
   std::vector<double> crop;  // x0 y0 x1 y1 or x0 y0 z0 x1 y1 z1 [m, map frame]; empty: no limit
   PoseMeaning meaning;
 };
-/// The endings of files of scans, for the completion of the shell.
+/// Returns the extensions of scan files, for shell completion.
 std::vector<std::string> scanEndings();
 /// Adds the positional argument of the paths.
 void addScanPaths(Command& command, ScanInput& input);
@@ -48,10 +48,9 @@ std::optional<PoseConvention> impossibleConvention(const ScanInput& input);
 /// Calls gaussmap::findScans(). Throws UsageError if --fields is not valid.
 FoundScans findScans(const ScanInput& input, const FindScansOptions& options);
 /// Calls findScans(). Prints its warnings on stderr, and how the poses were found if they are not those of PCD files.
-/// For a command
-/// that follows the rays of the sensor, `follows_rays` names it ("command clean"); the function then calls
-/// requireSensorPositions() first. Throws like these functions, and std::runtime_error if the check of poses finds a
-/// fault, see checkMeaning().
+/// `follows_rays` is the name of a command that follows the rays of the sensor ("command clean"), or nullptr. If it is
+/// given, the function calls requireSensorPositions() first. Throws like these functions, and std::runtime_error if the
+/// check of poses finds a fault, see checkMeaning().
 FileScans openScans(const ScanInput& input, int threads, const char* follows_rays = nullptr);
 /// A coordinate reference system, as text, and the first file that has it.
 struct FileSystem {
@@ -69,11 +68,12 @@ AccumulateOptions accumulateOptions(const ScanInput& input, double resolution, i
 /// coordinates that are too coarse for cells of `resolution` [m].
 std::vector<Vector<3>> readPoints(const ScanInput& input, int threads, double resolution = MapOptions().resolution);
 
-/// The name of a scan without its folders: "scan.pcd", or "drive.bag: /points 1700000000.1" in a file of several scans.
+/// Returns the name of a scan without its folders: "scan.pcd", or "drive.bag: /points 1700000000.1" in a file of
+/// several scans.
 std::string shortNameOf(const ScanInfo& scan);
-/// The short names of all scans, with the last folder if names would be equal: "000000/cloud.pcd".
+/// Returns the short names of all scans, with the last folder if names would be equal: "000000/cloud.pcd".
 std::vector<std::string> shortNamesOf(const Scans& scans);
-/// The name of the scans in messages: "scan.pcd", or "scan.pcd and 4 more".
+/// Returns the name of the scans in messages: "scan.pcd", or "scan.pcd and 4 more".
 std::string nameOf(const Scans& scans);
 
 }  // namespace gaussmap::app

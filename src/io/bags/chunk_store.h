@@ -26,14 +26,15 @@ struct Chunk {
   std::uint32_t crc = 0;  ///< CRC-32 of the expanded bytes; 0: unknown
 };
 
-/// Expanded bytes. They stay valid as long as the object and the store live.
+/// Expanded bytes. They are valid while both the object and the store exist.
 struct ChunkBytes {
   std::string_view bytes;
   std::shared_ptr<const char[]> owner;
 };
 
-/// A mapped file and its chunks, which are expanded when they are needed. The most recently used chunks are kept, at
-/// most 64 MiB or one chunk. bytes() is thread-safe.
+/// A mapped file and its chunks, which are expanded when they are needed. The most recently used chunks are kept,
+/// up to 64 MiB, but at least one. If dropped chunks are soon needed again, the limit grows, up to 512 MiB. bytes() is
+/// thread-safe.
 class ChunkStore {
  public:
   /// Maps a file. `shown` is its path in messages.
@@ -44,7 +45,7 @@ class ChunkStore {
   std::size_t chunks() const { return chunks_.size() - 1; }
 
   /// Adds a chunk and returns its number, from 1. Throws FileError if its size is not plausible: a chunk can expand to
-  /// maxExpanded() of its size, and all chunks together to 512 MiB and 200 times the size of the file.
+  /// maxExpanded() of its size, and all chunks together to 512 MiB plus 200 times the size of the file.
   std::size_t add(const Chunk& chunk);
   const Chunk& chunk(std::size_t number) const { return chunks_[number]; }
 

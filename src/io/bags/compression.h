@@ -14,8 +14,8 @@ enum class Compression { None, Zstd, Lz4, Bz2 };
 /// Returns "zstd", "lz4", "bz2", or "none".
 std::string nameOf(Compression compression);
 
-/// Returns the maximum size to which so many bytes may expand: 64 MiB and 200 times their size. The limit keeps a small
-/// file from filling the memory.
+/// Returns the maximum size to which so many bytes may expand: 64 MiB plus 200 times their size. The limit keeps a
+/// small file from filling the memory.
 std::uint64_t maxExpanded(std::uint64_t packed);
 
 /// Expands bytes to exactly `size` bytes at `target`. `compression` must not be None. Returns an empty string, or what
@@ -32,11 +32,11 @@ std::string expandMessage(std::string_view packed, std::vector<char>& message);
 /// Returns the first bytes of a zstd file, at most `length`; less if it is damaged or shorter.
 std::string expandStart(std::string_view packed, std::size_t length);
 
-/// A temporary file with the content of a zstd file. The file has no name any more when the object is gone.
+/// A temporary file with the content of a zstd file. The destructor removes the file.
 class ExpandedFile {
  public:
   /// Expands a file into the folder for temporary files. Throws FileError if it is damaged, expands to more than 256
-  /// MiB and 200 times its size, or cannot be written.
+  /// MiB plus 200 times its size, or cannot be written.
   explicit ExpandedFile(const std::filesystem::path& packed);
   ~ExpandedFile();
   ExpandedFile(const ExpandedFile&) = delete;

@@ -35,7 +35,8 @@ struct McapRecord {
   std::string_view content;
 };
 
-/// Reads the record at `place`. Returns false if it does not fit into the bytes; `record` then has what is there.
+/// Reads the record at `place`. Returns false if it does not fit into the bytes; `record` then holds the part that
+/// fits.
 bool readMcapRecord(std::string_view bytes, std::uint64_t place, McapRecord& record);
 
 struct McapMessage {

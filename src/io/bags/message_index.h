@@ -31,17 +31,17 @@ struct Channel {
 
 /// Collects the channels and the places of the messages while a file is read, and turns them into topics and messages.
 ///
-/// The index records of a file are believed if the channels in them are known and their sum is what the file counts.
-/// Otherwise the chunks are expanded and read.
+/// The index records of a file are used if their channels are known, and if they have as many messages as the file
+/// claims. Otherwise the chunks are expanded and read.
 class MessageIndex {
  public:
   explicit MessageIndex(const ChunkStore& store) : store_(&store) {}
 
   /// Adds a channel. Throws FileError if the number has another meaning already, or if there are too many channels.
-  /// The place is for the message.
+  /// `chunk` and `offset` are for the error.
   void define(std::uint32_t number, Channel channel, std::size_t chunk, std::uint64_t offset);
-  /// Adds a message: byte `offset` of a chunk, or of the file if `chunk` is 0. Throws FileError if there are more
-  /// messages than a million and one per byte of the file.
+  /// Adds a message: byte `offset` of a chunk, or of the file if `chunk` is 0. Throws FileError if there are more than
+  /// one million messages plus one per byte of the file.
   void add(std::uint32_t channel, std::chrono::nanoseconds time, std::size_t chunk, std::uint64_t offset);
   /// Marks a chunk as described by index records.
   void markIndexed(std::size_t chunk);
@@ -65,7 +65,7 @@ class MessageIndex {
   static std::uint64_t offsetOf(const MessagePlace& message) {
     return message.place & ((std::uint64_t{1} << kOffsetBits) - 1);
   }
-  /// Throws FileError if a message that was found at a place is not the one that the index says.
+  /// Throws FileError if the message at a place is not the one that the index names.
   void requireSame(const MessagePlace& expected, std::uint32_t channel, std::chrono::nanoseconds time) const;
 
  private:

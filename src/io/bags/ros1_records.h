@@ -31,7 +31,8 @@ struct Ros1Record {
   std::size_t bytes = 0;  ///< size of the whole record
 };
 
-/// Reads the record at `place`. Returns false if it does not fit into the bytes; `record` then has what is there.
+/// Reads the record at `place`. Returns false if it does not fit into the bytes; `record` then holds the part that
+/// fits.
 bool readRos1Record(std::string_view bytes, std::uint64_t place, Ros1Record& record);
 
 /// Returns true if the bytes have a field with this name, and stores its value.

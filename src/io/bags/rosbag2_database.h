@@ -9,8 +9,8 @@
 
 namespace gaussmap::detail {
 
-/// Returns true if a file starts like a SQLite database that has no owner: the files of rosbag2 have none, map files
-/// have one. Needs the first 100 bytes.
+/// Returns true if a file starts like an SQLite database without an application id. Files of rosbag2 have none, map
+/// files have one. Needs the first 100 bytes.
 bool isSqliteWithoutOwner(std::string_view start);
 
 /// Returns true if a database has the tables of rosbag2. Returns false if it cannot be read.

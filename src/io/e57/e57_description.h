@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The contents of the XML section of an E57 file, as far as they matter for scans.
+// The contents of the XML section of an E57 file that concern scans.
 #pragma once
 
 #include <array>

@@ -16,7 +16,7 @@
 
 namespace gaussmap::detail {
 
-/// An open E57 file. It is not changed any more.
+/// An open E57 file. It does not change after opening.
 struct E57Contents {
   explicit E57Contents(const std::filesystem::path& path) : pages(path) {}
 

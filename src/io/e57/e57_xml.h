@@ -11,8 +11,8 @@ namespace gaussmap::detail {
 /// Returns "scan 3: ", the start of messages about a scan. The numbers count from 0, as in the E57 standard.
 std::string e57Place(std::size_t scan);
 
-/// Reads the XML section of an E57 file. Entities of a document type are not expanded. Throws FileError if it is no
-/// XML, or if the description of a scan is incomplete or unknown.
+/// Reads the XML section of an E57 file. Entities of a document type are not expanded. Throws FileError if it is
+/// not XML, or if the description of a scan is incomplete or unknown.
 E57Description parseE57Xml(const std::filesystem::path& path, std::string xml);
 
 }  // namespace gaussmap::detail

@@ -33,7 +33,7 @@ struct MessageTopic {
 struct MessagePlace {
   std::size_t topic = 0;                 ///< index of the topic
   std::chrono::nanoseconds log_time{0};  ///< when it was recorded, since 1970
-  std::uint64_t place = 0;               ///< known to the MessageFile only
+  std::uint64_t place = 0;               ///< used only by the MessageFile
 };
 
 /// A recording of messages: an MCAP file, a bag of ROS 1, or a database of rosbag2. All functions are thread-safe.

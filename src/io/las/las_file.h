@@ -16,7 +16,7 @@ bool isLas(std::string_view start);
 /// lasFields() lists the values.
 ///
 /// Throws FileError if the header is damaged, if the file is cut off, if it is a LAZ file, or if the coordinates are
-/// degrees. The warnings tell if the header and the points contradict each other in a way that does not harm the
+/// degrees. There is a warning if the header and the points contradict each other in a way that does not harm the
 /// points, and if the coordinates are not metres.
 std::unique_ptr<ScanFile> openLas(const std::filesystem::path& path);
 

@@ -57,7 +57,7 @@ class BitModel {
 
 /// Decodes symbols of an arithmetic coder with 32-bit registers, as used by LASzip.
 ///
-/// Nothing is read outside the data: behind their end the decoder reads zeros and failed() becomes true. So callers can
+/// Reads nothing outside the data: behind their end, the decoder reads zeros, and failed() returns true. So callers can
 /// check failed() once per group of points.
 class ArithmeticDecoder {
  public:

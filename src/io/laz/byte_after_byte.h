@@ -8,7 +8,7 @@
 
 namespace gaussmap::detail {
 
-/// Has one model of a byte for each value of that byte in the last point.
+/// Decodes a byte of each point with a model that depends on this byte of the point before.
 class ByteAfterByte {
  public:
   ByteAfterByte() {

@@ -21,7 +21,7 @@ class GpsTimeDecoder {
   void start(std::uint64_t time);
   /// Returns the bits of the next time. A failure shows in coder.failed() or in failed().
   std::uint64_t next(ArithmeticDecoder& coder);
-  /// Returns true if the data are impossible.
+  /// Returns true if the data are not valid.
   bool failed() const { return failed_; }
 
  private:

@@ -35,7 +35,7 @@ inline constexpr unsigned kScannerChannels = 4;
 /// The scanner channel of a point, for the items after the first.
 struct PointChannel {
   unsigned channel = 0;
-  bool is_new = false;  ///< differs from that of the point before
+  bool is_new = false;  ///< differs from the channel of the point before
 };
 
 /// Decodes one item of the points of formats 6 to 10.
@@ -48,7 +48,7 @@ class LayeredItem {
   virtual void start(const char* first, unsigned channel) = 0;
   /// Writes the item of the next point. `layers`: those of the item.
   virtual void decode(LazLayer* layers, PointChannel& channel, char* record) = 0;
-  /// Returns true if the data are impossible.
+  /// Returns true if the data are not valid.
   virtual bool failed() const { return false; }
 };
 

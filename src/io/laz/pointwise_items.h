@@ -18,7 +18,7 @@ class PointwiseItem {
   virtual void start(const char* first) = 0;
   /// Writes the item of the next point.
   virtual void decode(ArithmeticDecoder& coder, char* record) = 0;
-  /// Returns true if the data are impossible.
+  /// Returns true if the data are not valid.
   virtual bool failed() const { return false; }
 };
 

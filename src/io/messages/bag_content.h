@@ -26,7 +26,7 @@ struct BagScan {
 struct BagPoseTopic {
   TopicGroup topic;
   TimedPoses poses;
-  std::string parent, child;  ///< frames of the last message; the child is empty if the type has none
+  std::string parent, child;  ///< frames of the last message; child: empty if the type has none
 };
 
 /// What a recording says about scans and poses.
@@ -40,7 +40,7 @@ struct BagContent {
   std::vector<std::string> warnings;
 };
 
-/// Returns true if two names of topics are equal but for a slash in front.
+/// Returns true if two names of topics are equal, apart from a slash in front.
 bool isSameTopic(const std::string& a, const std::string& b);
 
 /// Reads the headers of all scans, and the poses that the options ask for, in one pass. Throws FileError.

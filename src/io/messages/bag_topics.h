@@ -37,7 +37,7 @@ std::string listTopics(const std::vector<TopicGroup>& topics);
 
 /// Returns the topic with the scans: the one with this name, or, if the name is empty, the only topic of
 /// sensor_msgs/PointCloud2, else of sensor_msgs/LaserScan, else of sensor_msgs/PointCloud. Topics without messages do
-/// not count. A slash in front of the name may be missing. Throws FileError that lists the topics.
+/// not count. The slash in front of the name can be left out. Throws FileError that lists the topics.
 TopicGroup chooseScanTopic(const std::filesystem::path& path, const MessageFile& file,
                            const std::vector<TopicGroup>& topics, const std::string& name);
 

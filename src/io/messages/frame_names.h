@@ -8,7 +8,7 @@
 
 namespace gaussmap::detail {
 
-/// A step back in the times of one topic that is larger than this does not come from a delay.
+/// Delays make the times of one topic step back by at most this. A larger step means that the clock was set back.
 inline constexpr std::chrono::milliseconds kMostStepBack{100};
 /// What to do if the times of a recording step back.
 inline constexpr const char* kResetAdvice =

@@ -59,7 +59,7 @@ struct OldCloudMessage {
 struct StampedTransform {
   std::chrono::nanoseconds stamp{0};
   std::string parent;
-  std::string child;  ///< empty if the message does not tell whose pose it is
+  std::string child;  ///< empty if the message does not say whose pose it is
   Pose pose;          ///< as written, not checked
 };
 

@@ -11,10 +11,10 @@
 
 namespace gaussmap::detail {
 
-/// How far from the given times a pose may be taken.
+/// How far the times of poses may be from the time of a lookup.
 struct PoseTimeLimits {
   std::chrono::nanoseconds between{0};  ///< interpolate between two poses that are at most this far apart
-  std::chrono::nanoseconds hold{0};     ///< otherwise take the nearest pose, which is at most this far away
+  std::chrono::nanoseconds hold{0};     ///< otherwise take the nearest pose, if it is at most this far away
 };
 
 /// What happened when poses were looked up at a time.

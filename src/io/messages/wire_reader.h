@@ -90,11 +90,11 @@ class WireReader {
   FloatsView floats(const char* what);
   /// Returns an array of structures of three floats.
   FloatsView triples(const char* what);
-  /// Reads the length of an array of structures, each of at least `least` bytes. Checks it against the bytes left.
+  /// Reads the length of an array of structures of at least `least` bytes each. Checks it against the bytes left.
   std::size_t structures(const char* what, std::size_t least);
   /// Skips numbers of eight bytes.
   void skipDoubles(std::size_t count, const char* what);
-  /// Throws FileError if more bytes follow than padding can be.
+  /// Throws FileError if more bytes follow than padding can explain.
   void requireEnd() const;
 
  private:

@@ -5,8 +5,8 @@
 
 namespace gaussmap::detail {
 
-/// While it exists, the points of opened scans are kept for the next time that these scans are opened, up to 64 MiB,
-/// see FileScans::keepForNextOpen(). For a look at some scans before a command reads all of them.
+/// While an object exists, up to 64 MiB of the points of opened scans are kept until these scans are opened again, see
+/// FileScans::keepForNextOpen(). Used to look at some scans before a command reads all of them.
 class KeepingPoints {
  public:
   explicit KeepingPoints(FileScans& scans) : scans_(scans) { scans_.keepForNextOpen(std::size_t{64} << 20); }

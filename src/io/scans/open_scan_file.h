@@ -14,9 +14,9 @@ namespace gaussmap::detail {
 /// Options of openScanFile().
 struct OpenOptions {
   FileOptions files;
-  bool needs_poses = true;             ///< false: the poses come from elsewhere, those in the file are not searched
+  bool needs_poses = true;             ///< false: a pose file gives the poses; those in the file are not read
   std::optional<double> max_time_gap;  ///< of the poses in a recording [s], see PoseMatching::max_time_gap
-  bool has_extrinsic = false;          ///< the poses are those of another frame, and it is known where the sensor is
+  bool has_extrinsic = false;          ///< the caller knows the pose of the sensor in the frame of the poses
   bool points_in_map = false;          ///< the points are in the map frame
 };
 

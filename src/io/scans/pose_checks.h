@@ -50,8 +50,8 @@ struct PoseDiagnosis {
 /// cannot be used, see poseFault().
 ///
 /// Warns if different clouds have the same pose: either all scans, or those scans whose pose is the identity because
-/// they have no pose of their own. Warns of translations beyond 1e8 m, and of positions
-/// that were written with too few digits.
+/// they have no pose of their own. Warns of translations beyond 1e8 m, and of positions that were written with too few
+/// digits.
 PoseDiagnosis diagnosePoses(const std::vector<ScanPose>& scans);
 
 }  // namespace gaussmap::detail

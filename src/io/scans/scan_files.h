@@ -42,11 +42,11 @@ class KeptReaders {
  public:
   using Reader = std::shared_ptr<const ScanReader>;
 
-  /// Allows that the points of further readers take this many bytes.
+  /// Sets the number of bytes that the points of further readers may take.
   void allow(std::size_t bytes);
-  /// Returns the reader of a scan, which is not kept any more; nullptr if there is none.
+  /// Returns the reader of a scan and stops keeping it; nullptr if there is none.
   Reader take(std::size_t scan);
-  /// Keeps the reader of a scan whose points take this many bytes, if that is allowed.
+  /// Keeps the reader of a scan whose points take this many bytes, if the limit allows it.
   void keep(std::size_t scan, const Reader& reader, std::size_t bytes);
 
  private:

@@ -10,9 +10,9 @@ namespace gaussmap::detail {
 
 /// Numbers of one column, from rows that are spread over the file.
 struct ColumnSample {
-  std::vector<double> values;  ///< NaN if the column is no number
-  bool numeric = true;         ///< false: a row has a text in this column
-  std::string text = {};       ///< the first text
+  std::vector<double> values;  ///< NaN if the word is not a number
+  bool numeric = true;         ///< false: a word in this column is not a number
+  std::string text = {};       ///< the first such word
   std::size_t text_line = 0;   ///< its line
 };
 

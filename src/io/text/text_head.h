@@ -15,7 +15,7 @@ namespace gaussmap::detail {
 struct TextHead {
   std::vector<std::string_view> names;  ///< of the columns, if a header gives them
   std::size_t names_line = 0;           ///< line of the header
-  bool counted = false;                 ///< numbers of points stand before the rows, as in PTS
+  bool counted = false;                 ///< the number of points stands before the rows of each scan, as in PTS
   TextPlace body;                       ///< the first number of points, or the first row
   bool has_row = false;
   std::size_t row_line = 0;  ///< line of the first row

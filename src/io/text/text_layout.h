@@ -15,11 +15,11 @@ namespace gaussmap::detail {
 /// How a value is made from columns.
 enum class ValueKind {
   Plain,    ///< the number of the column, divided by the divisor
-  Packed,   ///< a colour that one column holds as a whole number
+  Packed,   ///< a colour in one column, as a whole number
   Channels  ///< a colour from three columns, red green blue
 };
 
-/// A value of the points beside the coordinates.
+/// A value of the points other than the coordinates.
 struct PointValue {
   std::string name;
   ValueKind kind = ValueKind::Plain;

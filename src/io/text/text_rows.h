@@ -22,11 +22,11 @@ char separatorOf(std::string_view row);
 /// column after the last separator are left out. `separator` is ' ' (blanks and tabs), '\t', ',' or ';'.
 std::vector<std::string_view> splitRow(std::string_view row, char separator);
 
-/// Parses a number of a text: also nan and inf in any case, "1.#QNAN" of Windows, and no text or NA for NaN. Returns
-/// false if the word is not a number.
+/// Parses a number: also nan and inf in upper or lower case, and "1.#QNAN" of Windows. An empty word, NA,
+/// null and none mean NaN. Returns false if the word is not a number.
 bool parseCell(std::string_view word, double& value);
 
-/// Why a word is not a number, for a message: "'1,5' is not a number (1.5, not 1,5)".
+/// Returns why a word is not a number, for a message: "'1,5' is not a number (1.5, not 1,5)".
 std::string notANumber(std::string_view word);
 
 /// A position in a text.
@@ -35,7 +35,7 @@ struct TextPlace {
   std::size_t line = 1;  ///< from 1
 };
 
-/// A column that is to be read.
+/// A column to read.
 struct WantedColumn {
   std::size_t column = 0;
   double* values = nullptr;  ///< one number per row

@@ -37,17 +37,18 @@ struct FileScan {
 
 /// Options for recordings of ROS: MCAP files, databases of rosbag2, and bags of ROS 1.
 struct RecordingOptions {
-  std::string topic;        ///< of the scans; empty: the only one of PointCloud2, else of LaserScan
+  std::string topic;        ///< with the scans; empty: the only topic of type PointCloud2, else of LaserScan
   std::string poses;        ///< where poses come from: "tf", or a topic such as "/odom"; empty: see findScans()
-  std::string pose_frame;   ///< frame whose poses the topic gives; empty: its child_frame_id, else that of the scans
-  std::string fixed_frame;  ///< frame that becomes the map frame; empty: in tf map, else odom; of a topic its frame_id
-  bool log_times = false;   ///< true: times of recording count, not those in the headers of the messages
+  std::string pose_frame;   ///< frame whose poses are given; empty: child_frame_id of the topic, else that of the scans
+  std::string fixed_frame;  ///< frame that becomes the map frame; empty: tf: map, else odom; topic: its frame_id
+  bool log_times = false;   ///< true: uses the times of recording, not those in the headers of the messages
 };
 
-/// What the content of some files does not say.
+/// Settings for files whose content does not say everything: names of columns, topics and frames.
 struct FileOptions {
-  /// Names of the columns of a text, or of the fields of raw records such as .bin files: "x y z intensity". "-" skips a
-  /// column; "x:mm" and "time:ns" give units, "ring:u16" gives the type in a record. Empty: found from the content.
+  /// Names of the columns of a text file, or of the fields of raw records such as .bin files: "x y z intensity". "-"
+  /// skips a column; "x:mm" and "time:ns" give units, "ring:u16" gives the type in a record. Empty: found from the
+  /// content.
   std::string fields;
   RecordingOptions recording;  ///< for recordings
 };
@@ -82,9 +83,9 @@ class GAUSSMAP_API FileScans : public Scans {
   /// std::nullopt for other files. Throws like open().
   std::optional<PcdReader> pcd(std::size_t index) const;
 
-  /// From now on, keeps the points of each opened scan whose file must be parsed or decompressed, until the scan is
-  /// opened again, at most `bytes` in all. A program can then look at some scans before it reads all of them, at little
-  /// cost. 0 = stop.
+  /// From now on, keeps the readers of opened scans that hold their points in memory, until the scans are opened again.
+  /// All kept points together take at most `bytes`; 0 = stop. A program that looks at some scans before it reads all of
+  /// them then parses or decompresses these scans only once.
   void keepForNextOpen(std::size_t bytes);
 
   /// Returns warnings about the coordinates of the points that were read so far: floats that are too coarse for cells
@@ -138,7 +139,7 @@ struct FindScansOptions {
   std::optional<Extrinsic> extrinsic =
       std::nullopt;                     ///< std::nullopt: calib.txt beside a KITTI pose file, if it exists
   ScanFrame frame = ScanFrame::Sensor;  ///< frame of the points in the files
-  FileOptions files;                    ///< what the content of some files does not say
+  FileOptions files;                    ///< names of columns, topics and frames
 };
 
 /// Scans with poses, and what was found out about them.
@@ -159,7 +160,8 @@ struct FoundScans {
 /// - Recordings: the pose of the sensor frame in the fixed frame at the time of the scan. It comes from tf if a moving
 ///   transform connects the frames, else from the only topic of odometry. Transforms are interpolated between
 ///   neighbours at most 1 s apart, and poses of a topic between neighbours at most twice the interval of the scans
-///   apart. PoseMatching::max_time_gap replaces these limits.
+///   apart. If PoseMatching::max_time_gap is set, neighbours may also be up to twice this gap apart, and else the
+///   nearest transform or pose counts if it is at most this gap away.
 /// - LAS and LAZ: none, because the points are in the map frame. Other files: the sensor is at the origin.
 ///
 /// There is a warning if a scan is listed twice. Throws FileError if a file cannot be read or is a map, if a scan has
