@@ -37,11 +37,12 @@ struct FileScan {
 
 /// Options for recordings of ROS: MCAP files, databases of rosbag2, and bags of ROS 1.
 struct RecordingOptions {
-  std::string topic;        ///< with the scans; empty: the only topic of type PointCloud2, else of LaserScan
-  std::string poses;        ///< where poses come from: "tf", or a topic such as "/odom"; empty: see findScans()
-  std::string pose_frame;   ///< frame whose poses are given; empty: child_frame_id of the topic, else that of the scans
-  std::string fixed_frame;  ///< frame that becomes the map frame; empty: tf: map, else odom; topic: its frame_id
-  bool log_times = false;   ///< true: uses the times of recording, not those in the headers of the messages
+  std::string topic;       ///< with the scans; empty: the only topic of type PointCloud2, else of LaserScan
+  std::string poses;       ///< where poses come from: "tf", or a topic such as "/odom"; empty: see findScans()
+  std::string pose_frame;  ///< frame whose poses are given; empty: child_frame_id of the topic, else that of the scans
+  /// Frame that becomes the map frame. Empty: for poses from tf, map, else odom; for poses from a topic, its frame_id.
+  std::string fixed_frame;
+  bool log_times = false;  ///< true: uses the times of recording, not those in the headers of the messages
 };
 
 /// Settings for files whose content does not say everything: names of columns, topics and frames.
