@@ -137,7 +137,7 @@ Extrinsic extrinsicIn(const std::string& text) {
   return extrinsic;
 }
 
-/// Returns true if options are given that mean something else, or something only, for recordings.
+/// Returns true if options are given that only recordings have, or that mean something else for recordings.
 bool hasRecordingOptions(const ScanInput& input) {
   const RecordingOptions& recording = input.files.recording;
   return namesTopic(input.poses) || lacksSlash(input.poses) ||
@@ -161,7 +161,8 @@ void checkOptions(const ScanInput& input, bool has_recording) {
   const char* const kRecording = "a recording of ROS among the inputs";
   require(has_recording, !recording.topic.empty(), "--topic", kRecording);
   require(has_recording, recording.log_times, "--log-times", kRecording);
-  require(has_recording && !has_file, !recording.fixed_frame.empty(), "--fixed-frame", "poses of a recording");
+  require(has_recording && !has_file, !recording.fixed_frame.empty(), "--fixed-frame",
+          "poses of a recording; the poses of a file are in the map frame already");
   require(has_recording, !recording.pose_frame.empty(), "--pose-frame", kRecording);
 }
 

@@ -276,7 +276,7 @@ class PoseAssigner {
            ", or --extrinsic none if both are the same";
   }
 
-  /// Poses from elsewhere are those of a frame that carries the sensor.
+  /// Poses from a pose file are those of a frame on which the sensor is mounted.
   void mountings() {
     requireFrame("--pose-frame", options_.pose_frame);
     const std::string carrier = frameName(options_.pose_frame);

@@ -12,7 +12,8 @@ namespace gaussmap::detail {
 inline constexpr std::chrono::milliseconds kMostStepBack{100};
 /// What to do if the times of a recording step back.
 inline constexpr const char* kResetAdvice =
-    " in the order of the recording (was the simulated time reset?); use --log-times, or split the recording";
+    " in the order of the recording; use --log-times if only the clock was reset, or split the recording if it holds "
+    "several runs";
 
 /// Returns the name of a frame without its namespace: "map" of "robot1/map".
 inline std::string lastPart(const std::string& frame) {
