@@ -4,6 +4,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 #include "gaussmap/core/error.h"
@@ -12,6 +13,8 @@ namespace gaussmap::detail {
 namespace {
 
 constexpr std::uint64_t kMostKeptBytes = std::uint64_t{512} << 20;
+constexpr std::size_t kMostFinishedBytes = std::size_t{8} << 20;
+constexpr std::size_t kReadAhead = std::size_t{64} << 10;  // the kernel maps so much around a byte that is read
 
 std::uint32_t crcOf(std::string_view bytes) {
   return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
@@ -40,6 +43,7 @@ std::size_t ChunkStore::add(const Chunk& chunk) {
       refuse("all chunks together have more than 512 MiB and 200 times the size of the file");
   }
   chunks_.push_back(chunk);
+  finishedWith(chunk.packed.substr(0, 1));  // its record was read
   return chunks_.size() - 1;
 }
 
@@ -60,9 +64,25 @@ ChunkBytes ChunkStore::bytes(std::size_t number) const {
   return {bytes, slot->bytes};
 }
 
+void ChunkStore::finishedWith(std::string_view part) const {
+  const auto end = [](std::string_view bytes) { return bytes.data() + bytes.size(); };
+  const std::less<> before;
+  if (part.empty() || before(part.data(), file().data()) || before(end(file()), end(part))) return;
+  const std::lock_guard<std::mutex> lock(finished_mutex_);
+  if (finished_.empty()) finished_ = part;
+  const char* const first = std::min(part.data(), finished_.data());
+  finished_ = {first, static_cast<std::size_t>(std::max(end(part), end(finished_)) - first)};
+  finished_bytes_ += std::max(part.size(), kReadAhead);
+  if (finished_bytes_ < kMostFinishedBytes) return;
+  file_.release(finished_);
+  finished_ = {};
+  finished_bytes_ = 0;
+}
+
 void ChunkStore::check(const Chunk& chunk, std::string_view bytes) const {
   file_.requireWhole();
   if (chunk.crc != 0 && crcOf(bytes) != chunk.crc) fail(0, chunk.byte, "the chunk is damaged: its CRC is wrong");
+  finishedWith(bytes);
 }
 
 std::shared_ptr<ChunkStore::Slot> ChunkStore::slotOf(std::size_t number) const {
@@ -95,6 +115,7 @@ std::shared_ptr<const char[]> ChunkStore::expanded(const Chunk& chunk) const {
   const std::string error = expand(chunk.compression, chunk.packed, bytes.get(), size);
   file_.requireWhole();
   if (!error.empty()) fail(0, chunk.byte, "the chunk (" + nameOf(chunk.compression) + ") " + error);
+  finishedWith(chunk.packed);
   return bytes;
 }
 

@@ -226,7 +226,9 @@ std::vector<char> McapFile::read(const MessagePlace& message) const {
     if (!error.empty()) store_.fail(chunk, offset, "the compressed message " + error);
     return expanded;
   }
-  return {found.data.begin(), found.data.end()};
+  std::vector<char> data(found.data.begin(), found.data.end());
+  store_.finishedWith(found.data);
+  return data;
 }
 
 }  // namespace

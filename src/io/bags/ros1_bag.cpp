@@ -198,7 +198,9 @@ std::vector<char> Ros1Bag::read(const MessagePlace& message) const {
       !readRos1Message(record, found))
     store_.fail(chunk, offset, "expected a message (op 2): the bag or its index is damaged");
   index_.requireSame(message, found.connection, found.time);
-  return {record.data.begin(), record.data.end()};
+  std::vector<char> data(record.data.begin(), record.data.end());
+  store_.finishedWith(record.data);
+  return data;
 }
 
 }  // namespace

@@ -58,6 +58,7 @@ void addScansOf(const std::filesystem::path& path, ListedScans& listed) {
         info.fingerprint != 0 ? info.fingerprint : std::hash<std::string>()(path.string() + ":" + std::to_string(i));
   }
   for (const std::string& warning : file->warnings()) listed.warnings.push_back(path.string() + ": " + warning);
+  file->releasePages();
 }
 
 /// Returns true if the points of scans with the same pose show that the sensor stood still.
