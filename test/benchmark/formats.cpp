@@ -24,7 +24,6 @@
 #include "io/scans/open_scan_file.h"
 #include "measure.h"
 #include "subcommands.h"
-#include "table.h"
 
 namespace gaussmap::benchmark {
 namespace {
@@ -57,7 +56,6 @@ struct Way {
 struct Given {
   std::vector<std::string> files;
   int runs = 15;
-  std::string json;
 };
 
 double median(std::vector<double> values) {
@@ -142,7 +140,7 @@ void addPcl(const std::filesystem::path& folder, std::vector<Way>& ways) {
   std::vector<std::string> written = binary.paths;
   written.insert(written.end(), compressed.paths.begin(), compressed.paths.end());
   std::vector<Way> own = waysOf(written);
-  for (Way& way : own) way.name += " of PCL";
+  for (Way& way : own) way.name += ", written by PCL";
   ways.insert(ways.begin(), std::make_move_iterator(own.begin()), std::make_move_iterator(own.end()));
   ways.insert(ways.begin(), {binary, compressed});
 }
@@ -178,26 +176,17 @@ void print(const std::vector<Way>& ways, int runs) {
       "%zu points in %zu scans. Medians of %d interleaved runs after a first one, with opening, one thread. Rates and\n"
       "ratios are of processor time: how many times faster than PCL. Memory: peak of a process of its own.\n",
       ways.at(2).sums.points, ways.at(2).scans.size(), runs);
-  std::printf("%-34s %8s %9s %8s %8s %9s %8s %8s %9s\n", "", "", "processor", "wall", "", "", "PCL", "PCL", "");
-  std::printf("%-34s %8s %9s %8s %8s %9s %8s %8s %9s\n", "kind", "MB", "ms", "ms", "MB/s", "Mpoint/s", "binary",
+  std::printf("%-42s %8s %9s %8s %8s %9s %8s %8s %9s\n", "", "", "processor", "wall", "", "", "PCL", "PCL", "");
+  std::printf("%-42s %8s %9s %8s %8s %9s %8s %8s %9s\n", "kind", "MB", "ms", "ms", "MB/s", "Mpoint/s", "binary",
               "compr.", "memory MB");
   const double binary = median(ways[0].processor), compressed = median(ways[1].processor);
   for (const Way& way : ways) {
     const double seconds = median(way.processor);
-    std::printf("%-34s %8.1f %9.2f %8.2f %8.0f %9.1f %8.2f %8.2f %9.1f\n", way.name.c_str(), way.fileMegabytes(),
+    std::printf("%-42s %8.1f %9.2f %8.2f %8.0f %9.1f %8.2f %8.2f %9.1f\n", way.name.c_str(), way.fileMegabytes(),
                 1e3 * seconds, 1e3 * median(way.wall), way.fileMegabytes() / seconds,
                 1e-6 * static_cast<double>(ways[2].sums.points) / seconds, binary / seconds, compressed / seconds,
                 way.megabytes);
   }
-}
-
-Table tableOf(const std::vector<Way>& ways) {
-  Table table;
-  for (std::size_t i = 2; i < ways.size(); ++i)
-    for (const std::size_t peer : {0, 1})
-      table.rows.push_back(Row{"reading files", ways[i].name, 1, median(ways[i].processor), ways[i].megabytes,
-                               ways[peer].name, median(ways[peer].processor), ways[peer].megabytes});
-  return table;
 }
 
 struct TemporaryFolder {
@@ -232,7 +221,6 @@ void runFormats(const Given& given) {
     if (ways[i].sums.points != ways[2].sums.points) throw std::runtime_error(ways[i].name + ": PCL reads other points");
   measureInRounds(given.runs, ways);
   print(ways, given.runs);
-  if (!given.json.empty()) writeJson(given.json, tableOf(ways));
 }
 
 }  // namespace
@@ -242,7 +230,6 @@ void addFormats(CLI::App& app) {
   CLI::App& command = *app.add_subcommand("formats", "how fast the same scans are read from files of many kinds");
   command.add_option("files", given->files, "the same scans in files of any kinds")->required();
   command.add_option("--runs", given->runs, "number of runs")->check(CLI::PositiveNumber)->capture_default_str();
-  command.add_option("--json", given->json, "also writes the figures to this file");
   command.callback([given] { runFormats(*given); });
 }
 
