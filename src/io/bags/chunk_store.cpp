@@ -13,6 +13,7 @@ namespace gaussmap::detail {
 namespace {
 
 constexpr std::uint64_t kMostKeptBytes = std::uint64_t{512} << 20;
+constexpr std::size_t kReturns = 8;  // per kept chunk
 constexpr std::size_t kMostFinishedBytes = std::size_t{8} << 20;
 constexpr std::size_t kReadAhead = std::size_t{64} << 10;  // the kernel maps so much around a byte that is read
 
@@ -64,6 +65,35 @@ ChunkBytes ChunkStore::bytes(std::size_t number) const {
   return {bytes, slot->bytes};
 }
 
+ChunkBytes ChunkStore::start(std::size_t number, std::uint64_t least) const {
+  const Chunk& chunk = chunks_.at(number);
+  if (chunk.compression == Compression::None) {
+    file_.requireWhole();
+    return {chunk.packed, nullptr};
+  }
+  if (least < chunk.size / 2) {
+    const std::shared_ptr<Slot> slot = slotOf(number);
+    const std::lock_guard<std::mutex> lock(slot->filling);
+    if (slot->checked) return {{slot->bytes.get(), static_cast<std::size_t>(chunk.size)}, slot->bytes};
+    if (slot->start_size >= least || expandStart(chunk, least, *slot))
+      return {{slot->start.get(), slot->start_size}, slot->start};
+  }
+  return bytes(number);
+}
+
+bool ChunkStore::expandStart(const Chunk& chunk, std::uint64_t least, Slot& slot) const {
+  // Twice as much as before: then many calls do not take more time than expanding everything a few times.
+  const auto size = static_cast<std::size_t>(
+      std::min<std::uint64_t>(std::max<std::uint64_t>(least, 2 * slot.start_size), chunk.size));
+  const std::shared_ptr<char[]> bytes(new char[size > 0 ? size : 1]);
+  if (!expandFirst(chunk.compression, chunk.packed, bytes.get(), size)) return false;
+  file_.requireWhole();
+  finishedWith(chunk.packed.substr(0, size));
+  slot.start = bytes;
+  slot.start_size = size;
+  return true;
+}
+
 void ChunkStore::finishedWith(std::string_view part) const {
   const auto end = [](std::string_view bytes) { return bytes.data() + bytes.size(); };
   const std::less<> before;
@@ -92,11 +122,14 @@ std::shared_ptr<ChunkStore::Slot> ChunkStore::slotOf(std::size_t number) const {
     kept_.splice(kept_.begin(), kept_, found->second);
     return found->second->second;
   }
-  // If a chunk is needed again soon after it was dropped, messages of many chunks are interleaved in time. Then more
-  // chunks are kept, because expanding a chunk for each message could take hours.
+  // If chunks are needed again soon after they were dropped, again and again, messages of many chunks are interleaved
+  // in time. Then more chunks are kept, because expanding a chunk for each message could take hours.
   const auto dropped = dropped_.find(number);
-  if (dropped != dropped_.end() && drops_ - dropped->second <= 2 * kept_.size() + 4)
+  if (dropped != dropped_.end() && drops_ - dropped->second <= 2 * kept_.size() + 4 &&
+      ++returns_ > kReturns * kept_.size()) {
     keep_bytes_ = std::min(2 * keep_bytes_, kMostKeptBytes);
+    returns_ = 0;
+  }
   kept_.emplace_front(number, std::make_shared<Slot>());
   places_[number] = kept_.begin();
   kept_bytes_ += chunks_[number].size;
@@ -111,8 +144,9 @@ std::shared_ptr<ChunkStore::Slot> ChunkStore::slotOf(std::size_t number) const {
 
 std::shared_ptr<const char[]> ChunkStore::expanded(const Chunk& chunk) const {
   const auto size = static_cast<std::size_t>(chunk.size);
-  const std::shared_ptr<char[]> bytes(new char[size > 0 ? size : 1]);  // not filled with zeros first
-  const std::string error = expand(chunk.compression, chunk.packed, bytes.get(), size);
+  const std::size_t behind = roomBehind(chunk.compression);                                // its pages need no memory
+  const std::shared_ptr<char[]> bytes(new char[std::max<std::size_t>(size + behind, 1)]);  // not filled with zeros
+  const std::string error = expand(chunk.compression, chunk.packed, bytes.get(), size, behind);
   file_.requireWhole();
   if (!error.empty()) fail(0, chunk.byte, "the chunk (" + nameOf(chunk.compression) + ") " + error);
   finishedWith(chunk.packed);

@@ -203,10 +203,19 @@ void checkAngles(const LaserMessage& laser, const MessageOrigin& origin) {
     origin.fail("angle_min or angle_increment is not finite");
 }
 
+MessageScanSize sizeOf(CloudMessage cloud, const MessageOrigin& origin) {
+  const std::size_t points = layoutOf(cloud, origin).points;
+  return {std::move(cloud.header), points, true};
+}
+
 }  // namespace
 
+bool isCloudType(const std::string& type) {
+  return type == "sensor_msgs/PointCloud2";
+}
+
 bool isScanType(const std::string& type) {
-  return type == "sensor_msgs/PointCloud2" || type == "sensor_msgs/LaserScan" || type == "sensor_msgs/PointCloud";
+  return isCloudType(type) || type == "sensor_msgs/LaserScan" || type == "sensor_msgs/PointCloud";
 }
 
 MessageScanSize scanSize(const std::string& type, std::string_view message, MessageEncoding encoding,
@@ -221,9 +230,16 @@ MessageScanSize scanSize(const std::string& type, std::string_view message, Mess
     checkChannels(cloud, origin);
     return {std::move(cloud.header), cloud.coordinates.size() / 3, true};
   }
-  CloudMessage cloud = decodeCloud(message, encoding, origin);
-  const std::size_t points = layoutOf(cloud, origin).points;
-  return {std::move(cloud.header), points, true};
+  return sizeOf(decodeCloud(message, encoding, origin), origin);
+}
+
+std::optional<MessageScanSize> scanSizeOfStart(const MessageStart& start, MessageEncoding encoding,
+                                               const MessageOrigin& origin) {
+  try {
+    return sizeOf(decodeCloudStart({start.bytes.data(), start.bytes.size()}, start.size, encoding, origin), origin);
+  } catch (const FileError&) {
+    return std::nullopt;
+  }
 }
 
 std::unique_ptr<ScanReader> readScan(const std::string& type, std::vector<char> message, MessageEncoding encoding,
