@@ -57,7 +57,11 @@ ChunkBytes ChunkStore::bytes(std::size_t number) const {
   }
   const std::shared_ptr<Slot> slot = slotOf(number);
   const std::lock_guard<std::mutex> lock(slot->filling);
-  if (packed && !slot->bytes) slot->bytes = expanded(chunk);
+  if (packed && !slot->bytes) {
+    slot->start = nullptr;  // first, because both together need more memory
+    slot->start_size = 0;
+    slot->bytes = expanded(chunk);
+  }
   const std::string_view bytes =
       packed ? std::string_view(slot->bytes.get(), static_cast<std::size_t>(chunk.size)) : chunk.packed;
   if (!slot->checked) check(chunk, bytes);
