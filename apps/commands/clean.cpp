@@ -45,16 +45,23 @@ struct CleanCommand {
 
 /// Returns the names of the cleaned scans. Scans of files with several scans get a number: drive_000007.pcd.
 std::vector<std::filesystem::path> copiesOf(const FileScans& scans) {
-  std::vector<std::filesystem::path> paths;
-  paths.reserve(scans.size());
-  for (const FileScan& scan : scans.files()) paths.push_back(scan.path);
-  std::vector<std::filesystem::path> copies = scanCopies(paths);
-  for (std::size_t i = 0; i < copies.size(); ++i) {
+  std::vector<std::filesystem::path> files;
+  std::vector<std::size_t> file_of;  // per scan
+  for (const FileScan& scan : scans.files()) {
+    const bool is_same_file = !scan.name.empty() && !files.empty() && files.back() == scan.path;
+    if (!is_same_file) files.push_back(scan.path);
+    file_of.push_back(files.size() - 1);
+  }
+  const std::vector<std::filesystem::path> names = scanCopies(files);
+  std::vector<std::filesystem::path> copies;
+  for (std::size_t i = 0; i < file_of.size(); ++i) {
+    std::filesystem::path& copy = copies.emplace_back(names[file_of[i]]);
     const FileScan& scan = scans.files()[i];
+    if (!scans.pcd(i)) copy.replace_extension(".pcd");
     if (scan.name.empty()) continue;
     std::string number = std::to_string(scan.index);
     number.insert(0, 6 - std::min<std::size_t>(6, number.size()), '0');
-    copies[i].replace_filename(copies[i].stem().string() + "_" + number + ".pcd");
+    copy.replace_filename(copy.stem().string() + "_" + number + ".pcd");
   }
   return copies;
 }

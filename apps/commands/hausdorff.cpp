@@ -21,9 +21,9 @@ const Help kHausdorffHelp = {
 grows with the number of samples, so compare maxima only at equal --samples, or compare quantiles. The rows "2 sigma"
 use only the samples within 2 standard deviations of their means.
 
-Clouds are combined as in pcd2map. A PLY file with faces is a mesh, without faces a cloud. For a mesh, map->ref are exact distances to its surface, and ref->map are the
-distances of --samples points on it. Another map is sampled in the same way at the same scale, so the distance of two
-equal maps is 0.
+Clouds are combined as in pcd2map. A PLY file with faces is a mesh, without faces a cloud. For a mesh, map->ref are
+exact distances to its surface, and ref->map are the distances of --samples points on it. Another map is sampled in
+the same way at the same scale, so the distance of two equal maps is 0.
 
 --held-out: a point x scores ln((1 - e) p(x) + e / V). p is the density of the scale [1/m^3], e is --background, and
 V is the volume of the box around the points. A point far from all Gaussians ("nowhere") scores the floor ln(e / V).

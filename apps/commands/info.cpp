@@ -51,17 +51,6 @@ std::string sentenceOf(const Json& step) {
   return sentence;
 }
 
-/// Returns the name in a WKT, for example PROJCS "NAD83 / UTM zone 15N"; or the start of another text.
-std::string nameOfSystem(const std::string& text) {
-  constexpr std::size_t kLongest = 100;
-  const std::size_t begin = text.find("[\""), end = begin == std::string::npos ? begin : text.find('"', begin + 2);
-  std::string name =
-      end == std::string::npos ? text : text.substr(0, begin) + " " + text.substr(begin + 1, end - begin);
-  for (char& c : name)
-    if (static_cast<unsigned char>(c) < 0x20) c = ' ';
-  return name.size() > kLongest ? name.substr(0, kLongest) + "..." : name;
-}
-
 /// Returns whether the map accepts more scans, and if not, why.
 std::string stateOf(const GaussianMap<3>& map, const MapMetadata& metadata) {
   const auto final_error = metadata.find(kFinalEntry);

@@ -3,7 +3,6 @@
 #include "commands/pcd2map/pcd2map.h"
 
 #include <memory>
-#include <utility>
 
 #include "commands/commands.h"
 #include "commands/dropped_fields.h"
@@ -49,8 +48,8 @@ void run(const Pcd2mapOptions& options) {
   const FileScans scans =
       openScans(options.input, options.budget.refine.threads, options.online.on ? "option --online" : nullptr);
   noteDroppedFields(scans);
-  if (std::string system = coordinateSystemOf(scans); !system.empty())
-    task.metadata[kCoordinateSystemEntry] = std::move(system);
+  if (const std::vector<FileSystem> systems = coordinateSystemsOf(scans); !systems.empty())
+    task.metadata[kCoordinateSystemEntry] = systems.front().system;
   const AccumulateOptions reading =
       accumulateOptions(options.input, options.map.resolution, options.budget.refine.threads);
   const WrittenMap written = !options.max_memory.empty() ? buildWithinMemory(options, scans, reading, task)

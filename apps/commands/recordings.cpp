@@ -49,4 +49,10 @@ bool namesTopic(const std::string& poses) {
   return is_name && !poses.empty() && poses.front() == '/' && !std::filesystem::exists(poses, error);
 }
 
+bool lacksSlash(const std::string& poses) {
+  std::error_code error;
+  return !poses.empty() && poses.front() != '/' && poses != "tf" && !std::filesystem::exists(poses, error) &&
+         namesTopic("/" + poses);
+}
+
 }  // namespace gaussmap::app

@@ -18,5 +18,7 @@ std::vector<std::filesystem::path> recordingsIn(const std::vector<std::string>& 
 
 /// Returns true if the value of --poses is "tf" or a topic, not a file.
 bool namesTopic(const std::string& poses);
+/// Returns true if the value of --poses is not a file, but would be the name of a topic with a slash in front.
+bool lacksSlash(const std::string& poses);
 
 }  // namespace gaussmap::app

@@ -28,10 +28,11 @@ const Help kRegisterHelp = {
 The fitness is the share of the scan that lies on the map, from 0 to 1. "degenerate" means that some direction is
 unobservable, for example along a corridor.
 
-The search for a scan starts at its own pose, from --poses or its file (VIEWPOINT, tf of a recording ...). If no part of the scan lies
-on the map from there, it starts again from the pose found for the scan before, moved by the motion between the own
-poses of the two scans. With --guess, the first scan starts at the guess, and each other scan starts from the scan
-before in this way. Poses in files that are the same for all scans, or the identity for several scans, do not count.
+The search for a scan starts at its own pose, from --poses or its file (VIEWPOINT, tf of a recording ...). If no
+part of the scan lies on the map from there, it starts again from the pose found for the scan before, moved by the
+motion between the own poses of the two scans. With --guess, the first scan starts at the guess, and each other scan
+starts from the scan before in this way. Poses in files that are the same for all scans, or the identity for several
+scans, do not count.
 A scan without an own pose starts at the pose found for the scan before.
 
 A scan without usable points, a damaged file, or a scan that is not found on the map, gets a line on stderr, and the

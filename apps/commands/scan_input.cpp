@@ -138,9 +138,9 @@ Extrinsic extrinsicIn(const std::string& text) {
 /// Returns true if options are given that mean something else, or something only, for recordings.
 bool hasRecordingOptions(const ScanInput& input) {
   const RecordingOptions& recording = input.files.recording;
-  return namesTopic(input.poses) || (input.poses.empty() && (input.max_time_gap || input.skip_without_pose)) ||
-         !recording.topic.empty() || !recording.pose_frame.empty() || !recording.fixed_frame.empty() ||
-         recording.log_times;
+  return namesTopic(input.poses) || lacksSlash(input.poses) ||
+         (input.poses.empty() && (input.max_time_gap || input.skip_without_pose)) || !recording.topic.empty() ||
+         !recording.pose_frame.empty() || !recording.fixed_frame.empty() || recording.log_times;
 }
 
 /// Throws UsageError for options that have no effect.
@@ -148,6 +148,7 @@ void checkOptions(const ScanInput& input, bool has_recording) {
   const auto require = [](bool is_met, bool is_given, const char* option, const char* need) {
     if (is_given && !is_met) throw UsageError(std::string(option) + ": needs " + need);
   };
+  require(has_recording, input.poses == "tf", "--poses tf", "a recording of ROS among the inputs");
   const bool has_file = !input.poses.empty() && !(has_recording && namesTopic(input.poses));
   require(has_file, input.pose_format != "auto", "--pose-format", "a file of poses (--poses)");
   require(has_file, input.match_poses != "auto", "--match-poses", "a file of poses (--poses)");
@@ -159,13 +160,15 @@ void checkOptions(const ScanInput& input, bool has_recording) {
   require(has_recording, !recording.topic.empty(), "--topic", kRecording);
   require(has_recording, recording.log_times, "--log-times", kRecording);
   require(has_recording && !has_file, !recording.fixed_frame.empty(), "--fixed-frame", "poses of a recording");
-  require(has_recording && !has_file, !recording.pose_frame.empty(), "--pose-frame", "poses of a recording");
+  require(has_recording, !recording.pose_frame.empty(), "--pose-frame", kRecording);
 }
 
 }  // namespace
 
 FindScansOptions findOptions(const ScanInput& input) {
   const bool has_recording = hasRecordingOptions(input) && !recordingsIn(input.paths).empty();
+  if (has_recording && lacksSlash(input.poses))
+    throw UsageError("--poses " + input.poses + ": no such file; a topic begins with a slash: --poses /" + input.poses);
   checkOptions(input, has_recording);
   FindScansOptions options;
   options.files = input.files;
@@ -181,6 +184,20 @@ FindScansOptions findOptions(const ScanInput& input) {
   options.frame = input.frame == "map" ? ScanFrame::Map : ScanFrame::Sensor;
   return options;
 }
+
+namespace {
+
+/// Throws FileError if ranges are limited, but a file does not say where the sensor was.
+void requireRanges(const ScanInput& input, const FileScans& scans) {
+  if (input.max_range <= 0.0 && input.min_range <= 0.0) return;
+  for (const FileScan& scan : scans.files())
+    if (!scan.has_sensor_position)
+      throw FileError(scan.path,
+                      "the points are in the map frame, and the file does not say where the sensor was, so "
+                      "--max-range and --min-range have no meaning; use --crop");
+}
+
+}  // namespace
 
 FoundScans findScans(const ScanInput& input, const FindScansOptions& options) {
   try {
@@ -199,6 +216,7 @@ FileScans openScans(const ScanInput& input, int threads, const char* follows_ray
   const FindScansOptions options = findOptions(input);
   FoundScans found = findScans(input, options);
   if (follows_rays) requireSensorPositions(found.scans, follows_rays);
+  requireRanges(input, found.scans);
   if (!options.poses.empty())
     note(found.poses);
   else if (!found.scans.pcd(0))
@@ -207,6 +225,7 @@ FileScans openScans(const ScanInput& input, int threads, const char* follows_ray
   const PoseFinding finding = checkMeaning(found, input.meaning, impossibleConvention(input), threads);
   if (!finding.fault.empty()) throw std::runtime_error(finding.fault);
   if (!finding.warning.empty()) warn(finding.warning);
+  if (const std::string warning = warningOfSystems(found.scans); !warning.empty()) warn(warning);
   return std::move(found.scans);
 }
 
@@ -221,24 +240,26 @@ AccumulateOptions accumulateOptions(const ScanInput& input, double resolution, i
   return options;
 }
 
-std::string coordinateSystemOf(const FileScans& scans) {
-  std::string system, last_path;
+std::vector<FileSystem> coordinateSystemsOf(const FileScans& scans) {
+  std::vector<FileSystem> systems;
+  std::string last_path;
   for (std::size_t i = 0; i < scans.size(); ++i) {
     const std::string path = scans.files()[i].path.string();
     if (path == last_path) continue;
     last_path = path;
-    const std::string own = scans.coordinateSystem(i);
-    if (own.empty() || own == system) continue;
-    if (system.empty()) {
-      system = own;
-      continue;
-    }
-    warn(path +
-         ": the coordinate reference system differs from that of the files before; the coordinates are used as "
-         "they are, so convert the files to one system if it is not the same");
-    break;
+    std::string system = scans.coordinateSystem(i);
+    const bool is_known =
+        std::any_of(systems.begin(), systems.end(), [&](const FileSystem& other) { return other.system == system; });
+    if (!system.empty() && !is_known) systems.push_back({path, std::move(system)});
   }
-  return system;
+  return systems;
+}
+
+std::string warningOfSystems(const FileScans& scans) {
+  const std::vector<FileSystem> systems = coordinateSystemsOf(scans);
+  if (systems.size() < 2) return "";
+  return systems[1].path + ": the coordinate reference system differs from that of " + systems[0].path +
+         "; the coordinates are used as they are, so convert the files to one system if it is not the same";
 }
 
 void warnOfCoordinates(const FileScans& scans, double resolution) {

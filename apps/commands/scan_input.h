@@ -53,9 +53,14 @@ FoundScans findScans(const ScanInput& input, const FindScansOptions& options);
 /// requireSensorPositions() first. Throws like these functions, and std::runtime_error if the check of poses finds a
 /// fault, see checkMeaning().
 FileScans openScans(const ScanInput& input, int threads, const char* follows_rays = nullptr);
-/// Returns the coordinate reference system of the first file that has one, as text; empty if no file has one. Warns if
-/// the systems of the files differ.
-std::string coordinateSystemOf(const FileScans& scans);
+/// A coordinate reference system, as text, and the first file that has it.
+struct FileSystem {
+  std::string path, system;
+};
+/// Returns the different coordinate reference systems of the files.
+std::vector<FileSystem> coordinateSystemsOf(const FileScans& scans);
+/// Returns a warning if the files have different systems; else an empty text.
+std::string warningOfSystems(const FileScans& scans);
 /// Prints warnings about the coordinates that were read, see FileScans::coordinateWarnings(). Call it after reading.
 void warnOfCoordinates(const FileScans& scans, double resolution);
 /// Throws UsageError for ranges or a box that hold no point.

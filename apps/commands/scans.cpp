@@ -198,6 +198,7 @@ void print(const FoundScans& found, const Table& table, bool each) {
   printRow("times", timesText(table.times));
   printRow("poses", found.poses);
   for (const std::string& scan : found.without_pose) printRow("no pose", scan);
+  for (const FileSystem& system : coordinateSystemsOf(found.scans)) printRow("crs", nameOfSystem(system.system));
   printRow("box", boxText(table.box));
   if (found.warnings.empty()) printRow("warnings", "none");
   for (const std::string& warning : found.warnings) printRow("warning", warning);
@@ -238,6 +239,8 @@ void run(const ScansCommand& command) {
     found.warnings.push_back(warning);
   std::string fault = finding.fault;
   if (!finding.warning.empty()) found.warnings.push_back(finding.warning);
+  if (std::string warning = warningOfSystems(found.scans); !warning.empty())
+    found.warnings.push_back(std::move(warning));
   if (would_stop) {
     const std::size_t missing = found.without_pose.size(), all = found.scans.size() + missing;
     fault = (options.poses.empty() ? nameOf(found.scans) : command.input.poses) + ": " + std::to_string(missing) +

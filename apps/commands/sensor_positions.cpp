@@ -16,11 +16,12 @@ using namespace detail;
 void requireSensorPositions(const FileScans& scans, const char* follower) {
   for (std::size_t i = 0; i < scans.size(); ++i)
     if (!scans.files()[i].has_sensor_position)
-      throw FileError(scans.files()[i].path, std::string("the points are in the map frame, and the file does not say "
-                                                         "where the sensor was. The ") +
-                                                 follower +
-                                                 " follows the rays from the sensor to the points: give the positions "
-                                                 "of the sensor with --poses FILE and --frame map");
+      throw FileError(scans.files()[i].path,
+                      std::string("the points are in the map frame, and the file does not say "
+                                  "where the sensor was. The ") +
+                          follower +
+                          " follows the rays from the sensor to the points: give the positions "
+                          "of the sensor with --poses FILE (or a topic of the recording) and --frame map");
   const std::optional<SameView> worst = compareViews(scans);
   if (!worst || !worst->moved()) return;
   const auto fileOf = [&](std::size_t index) { return shortNameOf(scans.info(index)); };

@@ -18,8 +18,8 @@ double seconds(std::chrono::nanoseconds time) {
 }
 
 std::string rateOf(const BagTopicSummary& topic) {
-  if (!topic.median_interval || topic.median_interval->count() <= 0) return "-";
-  return formatted("%.4g Hz", 1.0 / seconds(*topic.median_interval));
+  const double duration = topic.first ? seconds(*topic.last - *topic.first) : 0.0;
+  return duration > 0.0 ? formatted("%.4g Hz", static_cast<double>(topic.messages - 1) / duration) : "-";
 }
 
 std::string timesOf(const BagTopicSummary& topic) {
@@ -39,7 +39,8 @@ Json jsonOf(const BagTopicSummary& topic) {
 TopicTable topicsOf(const std::filesystem::path& recording) {
   const BagSummary summary = bagSummary(*openMessageFile(recording), recording);
   TopicTable table;
-  table.json = {{"file", recording.string()}, {"kind", summary.kind}, {"topics", Json::array()}};
+  table.json = {
+      {"file", recording.string()}, {"kind", summary.kind}, {"topics", Json::array()}, {"warnings", summary.warnings}};
   std::size_t name_width = 5, type_width = 4;
   for (const BagTopicSummary& topic : summary.topics) {
     name_width = std::max(name_width, topic.name.size());

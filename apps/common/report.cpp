@@ -76,4 +76,14 @@ void writeText(const std::filesystem::path& path, const std::string& text) {
   file.commit();
 }
 
+std::string nameOfSystem(const std::string& text) {
+  constexpr std::size_t kLongest = 100;
+  const std::size_t begin = text.find("[\""), end = begin == std::string::npos ? begin : text.find('"', begin + 2);
+  std::string name =
+      end == std::string::npos ? text : text.substr(0, begin) + " " + text.substr(begin + 1, end - begin);
+  for (char& c : name)
+    if (static_cast<unsigned char>(c) < 0x20) c = ' ';
+  return name.size() > kLongest ? name.substr(0, kLongest) + "..." : name;
+}
+
 }  // namespace gaussmap::app

@@ -37,4 +37,7 @@ std::string perScale(const GaussianMap<3>& map, const GaussianMap<3>& whole);
 /// Writes a text file atomically. Throws FileError if it cannot be written.
 void writeText(const std::filesystem::path& path, const std::string& text);
 
+/// Returns the name in a WKT, for example PROJCS "NAD83 / UTM zone 15N"; or the start of another text.
+std::string nameOfSystem(const std::string& text);
+
 }  // namespace gaussmap::app

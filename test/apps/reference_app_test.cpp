@@ -96,7 +96,7 @@ class Reference : public AppTest {
     return lines.empty() ? "" : lines.front();
   }
   void makeFiles() {
-    for (const char* const name : {"map.gmap", "one scan.pcd", "notes.txt"}) directory_.write(name, "");
+    for (const char* const name : {"map.gmap", "one scan.pcd", "notes.md"}) directory_.write(name, "");
     fs::create_directory(own("folder"));
   }
   static Words sorted(Words words) {
@@ -192,7 +192,7 @@ TEST_F(Reference, BashCompletes) {
   EXPECT_EQ(bashOffers({"pcd2map", "--json", ""}), Words({"folder", "one scan.pcd"}));
   EXPECT_EQ(bashOffers({"pcd2map", "-o", ""}), Words({"folder", "map.gmap"}));
   EXPECT_EQ(bashOffers({"pcd2map", "--poses", ""}).size(), 4u);
-  EXPECT_EQ(bashOffers({"pcd2map", "note"}), Words({"notes.txt"}));  // better than nothing
+  EXPECT_EQ(bashOffers({"pcd2map", "note"}), Words({"notes.md"}));  // better than nothing
   EXPECT_EQ(bashOffers({"simulate", "-o", ""}), Words({"folder"}));
   EXPECT_EQ(bashOffers({"simulate", "str"}), Words({"street"}));
   EXPECT_EQ(bashOffers({"view", "map.gmap", "--up", "-"}), Words({"-x", "-y", "-z"}));
@@ -208,7 +208,7 @@ TEST_F(Reference, FishCompletes) {
   EXPECT_EQ(fishOffers("gaussmap pcd2map --frame "), Words({"map", "sensor"}));
   EXPECT_EQ(sorted(fishOffers("gaussmap pcd2map view -o ")), Words({"folder/", "map.gmap"}));
   EXPECT_EQ(sorted(fishOffers("gaussmap info ")), Words({"folder/", "map.gmap", "one scan.pcd"}));
-  EXPECT_EQ(fishOffers("gaussmap info note"), Words({"notes.txt"}));  // better than nothing
+  EXPECT_EQ(fishOffers("gaussmap info note"), Words({"notes.md"}));  // better than nothing
   EXPECT_EQ(fishOffers("gaussmap simulate str"), Words({"street"}));
 }
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // gaussmap pcd2map --update through the real program.
+#include <random>
+
 #include "apps/app_fixture.h"
 #include "gaussmap/io/gmap/map_file.h"
+#include "gaussmap/io/pcd/pcd_writer.h"
 #include "io/gmap/map_equality.h"
 
 namespace gaussmap::test {
@@ -39,6 +42,20 @@ TEST_F(UpdateApp, AddsScansAsIfAllHadBeenThereAtOnce) {
   EXPECT_EQ(history[1]["update"], true);
   EXPECT_EQ(history[2]["points"], said["points"]);
   EXPECT_EQ(history[2]["budget"], 1.0);  // taken over
+}
+
+TEST_F(UpdateApp, WritesTilesThatAreLargerThanTheOldFile) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> within(0.0, 3.0);
+  std::vector<Vector<3>> points = {{0.5, 0.5, 0.5}};
+  writePcd(own("one.pcd"), points);
+  for (int i = 0; i < 20000; ++i) points.emplace_back(within(random), within(random), within(random));
+  writePcd(own("many.pcd"), {points.begin() + 1, points.end()});
+  writePcd(own("all.pcd"), points);
+  succeed({"pcd2map", own("one.pcd"), "-o", own("map.gmap"), "--budget", "1"});
+  succeed({"pcd2map", own("many.pcd"), "--update", own("map.gmap"), "--no-pose-check"});
+  succeed({"pcd2map", own("all.pcd"), "-o", own("all.gmap"), "--budget", "1"});
+  EXPECT_TRUE(sameMap<3>(load(own("map.gmap")), load(own("all.gmap"))));
 }
 
 TEST_F(UpdateApp, KeepsTheBudgetOfTheMapUnlessAnotherIsGiven) {

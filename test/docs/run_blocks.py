@@ -8,6 +8,7 @@ Everything of a page runs in one temporary folder, in this order:
   sh      `bash -euo pipefail`, one bash per block, with `gaussmap` and Debian's `python3` on the PATH
   cpp     blocks without `int main` are the body of one main(), the others are programs of their own
   python  one interpreter per block
+          The recordings (*.mcap) in the folder `examples` beside the page are there under the same names.
   text    directly after one of these: its output (stdout, then stderr). Numbers and widths of blanks are not compared.
   cmake   the CMakeLists.txt that the programs of the page are built with (a block with `project(`), or lines of one
 A block after the line `<!-- not run: REASON -->` does not run: sh is parsed, and packages that it installs with apt must
@@ -152,6 +153,9 @@ class Page:
         bin_folder.mkdir()
         (bin_folder / "gaussmap").symlink_to(self.options.program.resolve())
         (bin_folder / "python3").symlink_to(PYTHON)
+        for recording in (self.path.parent / "examples").glob("*.mcap"):
+            (self.folder / "examples").mkdir(exist_ok=True)
+            shutil.copy(recording, self.folder / "examples")
         self.environment = {"PATH": f"{bin_folder}:/usr/local/bin:/usr/bin:/bin", "HOME": str(self.folder),
                             "LC_ALL": "C.UTF-8", "TERM": "dumb"}
 

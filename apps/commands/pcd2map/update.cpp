@@ -136,7 +136,8 @@ void updateFromScans(const Pcd2mapOptions& options) {
   updating.budget = options.update_budget ? options.update_budget : recorded.budget;
   updating.merge_cost = mergeCost(merging);
   updating.threads = options.budget.refine.threads;
-  const std::string system = coordinateSystemOf(scans);
+  const std::vector<FileSystem> systems = coordinateSystemsOf(scans);
+  const std::string system = systems.empty() ? "" : systems.front().system;
   if (const auto of_map = before.find(kCoordinateSystemEntry);
       !system.empty() && of_map != before.end() && of_map->second != system)
     warn(nameOf(scans) + ": the coordinate reference system differs from that of " + options.update +

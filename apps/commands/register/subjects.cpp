@@ -20,7 +20,7 @@ void addScansOf(const std::filesystem::path& path, const detail::OpenOptions& op
 }  // namespace
 
 std::vector<Subject> subjectsIn(const std::vector<std::filesystem::path>& files, const FindScansOptions& options) {
-  const detail::OpenOptions opening{options.files, options.poses.empty(), options.matching.max_time_gap};
+  const detail::OpenOptions opening = detail::openOptions(options);
   std::vector<Subject> subjects;
   for (const std::filesystem::path& path : files) {
     try {

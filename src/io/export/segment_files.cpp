@@ -10,6 +10,8 @@
 #include "gaussmap/io/pcd/pcd_reader.h"
 #include "gaussmap/io/pcd/pcd_writer.h"
 #include "io/export/segment_checks.h"
+#include "io/files/mapped_file.h"
+#include "io/pcd/pcd_header.h"
 #include "io/pcd/pcd_points.h"
 
 namespace gaussmap {
@@ -109,6 +111,7 @@ void saveSegmentsPcd(const std::filesystem::path& path, const SegmentMap& map) {
 }
 
 bool isSegmentPcd(const std::filesystem::path& path) {
+  if (!isPcd(MappedFile(path).bytes().substr(0, 4096))) return false;
   const PcdReader reader(path);
   return reader.header().find("normal_variance") != nullptr && reader.header().find("chain") != nullptr;
 }

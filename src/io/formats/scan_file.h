@@ -20,8 +20,16 @@ struct FileScanInfo {
   std::size_t points = 0;                                       ///< including points without a return
   std::optional<Pose> pose = std::nullopt;                      ///< sensor frame to map frame; std::nullopt: unknown
   std::optional<std::chrono::nanoseconds> time = std::nullopt;  ///< exact, since the zero of the file's clock
+  /// Pose of the sensor in the frame that is named for poses from elsewhere; std::nullopt: those are of the sensor.
+  std::optional<Pose> mounting = std::nullopt;
   double position_step = 0.0;     ///< step in which the position of the pose is written as text [m]; 0: unknown
   std::uint64_t fingerprint = 0;  ///< differs between files with different points; 0: unknown
+};
+
+/// Why scans of a file have no pose.
+struct MissingPoses {
+  std::string reason;  ///< for messages: "2 of 10 scans have no pose, first ..."
+  std::string advice;  ///< what to do: "use --skip-without-pose to leave such scans out"
 };
 
 /// An open file with one or more scans. The implementations read one kind of file each. All functions are thread-safe.
@@ -48,9 +56,10 @@ class ScanFile {
 
   /// Returns where the poses of the scans come from, for messages; empty if no scan has a pose.
   virtual std::string poseSource() const { return ""; }
-  /// Returns why scans have no pose, and what to do, for messages; empty if all have one, or if files of this kind have
-  /// no poses.
-  virtual std::string missingPoses() const { return ""; }
+  /// Returns why scans have no pose; empty if all have one, or if files of this kind have no poses.
+  virtual MissingPoses missingPoses() const { return {}; }
+  /// Returns the name of the frame of the poses, for example "odom"; empty if the file has no such names.
+  virtual std::string mapFrame() const { return ""; }
   /// Returns true if the points are in the map frame, and the file does not say where the sensor was, as in LAS.
   virtual bool inMapFrame() const { return false; }
   /// Returns the memory that a reader of the scan takes after the points were read [bytes], about; 0 if it takes none

@@ -12,6 +12,8 @@
 namespace gaussmap::detail {
 namespace {
 
+constexpr std::uintmax_t kLongestValue = 1000000000;  // SQLite's own limit [bytes]
+
 /// Returns the absolute path, because names like ":memory:" have a special meaning in SQLite.
 std::string absolutePath(const std::filesystem::path& path) {
   std::error_code error;
@@ -77,8 +79,8 @@ void Database::distrust() {
   std::error_code error;
   const std::uintmax_t bytes = std::filesystem::file_size(path_, error);
   if (error) throw FileError(path_, "cannot be read: " + error.message());
-  constexpr std::uintmax_t kLongest = 1000000000;  // SQLite's own limit
-  sqlite3_limit(handle(), SQLITE_LIMIT_LENGTH, static_cast<int>(std::clamp<std::uintmax_t>(bytes, 100000, kLongest)));
+  sqlite3_limit(handle(), SQLITE_LIMIT_LENGTH,
+                static_cast<int>(std::clamp<std::uintmax_t>(bytes, 100000, kLongestValue)));
   for (const int danger : {SQLITE_DBCONFIG_TRUSTED_SCHEMA, SQLITE_DBCONFIG_ENABLE_TRIGGER, SQLITE_DBCONFIG_ENABLE_VIEW})
     sqlite3_db_config(handle(), danger, 0, nullptr);
   // The steps are limited, because pages that point to each other in a circle, or a view instead of a table, could be
@@ -87,6 +89,12 @@ void Database::distrust() {
   steps_left_ = std::make_unique<std::int64_t>(max_steps_);
   sqlite3_progress_handler(
       handle(), 1000, [](void* left) { return --*static_cast<std::int64_t*>(left) < 0 ? 1 : 0; }, steps_left_.get());
+}
+
+void Database::allowLength(std::size_t bytes) const {
+  constexpr std::size_t kRestOfRow = 1000;
+  const auto needed = static_cast<int>(std::min<std::size_t>(bytes + kRestOfRow, kLongestValue));
+  if (sqlite3_limit(handle(), SQLITE_LIMIT_LENGTH, -1) < needed) sqlite3_limit(handle(), SQLITE_LIMIT_LENGTH, needed);
 }
 
 void Database::renewSteps() const {
@@ -117,11 +125,13 @@ void Statement::bind(int index, std::int64_t value) {
 }
 
 void Statement::bind(int index, std::string_view text) {
+  database_.allowLength(text.size());
   if (sqlite3_bind_text64(handle_.get(), index, text.data(), text.size(), SQLITE_TRANSIENT, SQLITE_UTF8) != SQLITE_OK)
     database_.fail();
 }
 
 void Statement::bindBlob(int index, std::string_view bytes) {
+  database_.allowLength(bytes.size());
   if (sqlite3_bind_blob64(handle_.get(), index, bytes.data(), bytes.size(), SQLITE_TRANSIENT) != SQLITE_OK)
     database_.fail();
 }

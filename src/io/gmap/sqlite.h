@@ -44,6 +44,8 @@ class Database {
   };
   friend class Statement;
   void distrust();
+  /// Allows a value of this length, which the program writes, although it is longer than the file.
+  void allowLength(std::size_t bytes) const;
   /// Gives a new statement the full number of steps.
   void renewSteps() const;
 

@@ -22,6 +22,14 @@ std::vector<std::string> lasBoxWarnings(const LasHeader& header, const char* rec
   const std::string box = textOf(header.minimum) + " to " + textOf(header.maximum);
   if (!header.hasBox()) return {"the bounding box of the header, " + box + ", is not a box: it is ignored"};
   // Many programs round the box or compute it with floats. Only a gross difference is worth a warning.
+  // Degrees need steps of 1e-7. No scanner resolves that in metres.
+  const bool may_be_degrees = header.crs.text.empty() && header.scale.head<2>().cwiseAbs().maxCoeff() <= 1e-6 &&
+                              header.minimum.x() >= -180.0 && header.maximum.x() <= 180.0 &&
+                              header.minimum.y() >= -90.0 && header.maximum.y() <= 90.0;
+  if (may_be_degrees)
+    return {
+        "the coordinates look like degrees of longitude and latitude, but lengths are taken as metres: convert the "
+        "file with pdal translate and filters.reprojection"};
   const Eigen::Vector3d extent = header.maximum - header.minimum;
   const Eigen::Vector3d farthest = header.minimum.cwiseAbs().cwiseMax(header.maximum.cwiseAbs());
   const Eigen::Vector3d tolerance = 0.01 * extent + 1e-6 * farthest + 2.0 * header.scale.cwiseAbs();

@@ -16,6 +16,7 @@ namespace {
 constexpr std::string_view kSignature = "LASF";
 constexpr int kNewestVersion = 4;
 constexpr int kFormats = 11;
+constexpr double kSmallestScale = 1e-12;
 constexpr std::size_t kVlrHeader = 54;   // [bytes]
 constexpr std::size_t kEvlrHeader = 60;  // [bytes]
 
@@ -122,9 +123,9 @@ class LasHeaderParser {
       header_.maximum[i] = at<double>(179 + 16 * axis);
       header_.minimum[i] = at<double>(187 + 16 * axis);
       const std::string name = kAxes[axis];
-      if (!std::isfinite(header_.scale[i]) || header_.scale[i] == 0.0)
+      if (!std::isfinite(header_.scale[i]) || header_.scale[i] < kSmallestScale)
         fail("byte " + std::to_string(131 + 8 * axis) + ": the scale of " + name + " is " +
-             numberText(header_.scale[i]) + ", but it must be a number other than 0");
+             numberText(header_.scale[i]) + ", but it must be a positive number, such as 0.001");
       if (!std::isfinite(header_.offset[i]))
         fail("byte " + std::to_string(155 + 8 * axis) + ": the offset of " + name + " is " +
              numberText(header_.offset[i]) + ", but it must be finite");
@@ -196,7 +197,9 @@ class LasHeaderParser {
     if (header_.crs.is_geographic || !is_other) return;
     std::string what = "the coordinates are in units of " + numberText(horizontal) + " m";
     if (std::abs(vertical - horizontal) > 1e-3) what += ", z in units of " + numberText(vertical) + " m";
-    warn(what + " by the coordinate system of the file, but lengths are taken as metres");
+    warn(what +
+         " by the coordinate system of the file, but lengths are taken as metres: convert "
+         "the file, for example with pdal translate in.las out.las reprojection --filters.reprojection.out_srs=EPSG:N");
   }
 
   const std::filesystem::path& path_;
@@ -253,7 +256,7 @@ void checkLasPoints(const std::filesystem::path& path, std::string_view bytes, L
   if (end > points_end && (end - points_end) / header.record_length > 0)
     header.warnings.push_back("the header says " + std::to_string(header.points) + " points, but there is room for " +
                               std::to_string((end - header.data_offset) / header.record_length) +
-                              ": the others are not read");
+                              ": the others are not read. The program that wrote the file may not have finished it");
 }
 
 void refuseLasDegrees(const std::filesystem::path& path, const LasHeader& header) {

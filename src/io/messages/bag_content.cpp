@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "io/messages/frame_names.h"
 #include "io/messages/message_scans.h"
 #include "io/messages/ros_messages.h"
 
@@ -40,14 +41,15 @@ class ContentReader {
       : file_(file), path_(path), options_(options), groups_(groupTopics(file)) {}
 
   BagContent read() {
-    content_.scan_topic = chooseScanTopic(path_, groups_, options_.topic);
+    content_.scan_topic = chooseScanTopic(path_, file_, groups_, options_.topic);
     uses_.assign(file_.topics().size(), {});
     use(content_.scan_topic, TopicUse::Scans, 0);
-    if (options_.poses != BagPoses::None) useTransforms();
+    if (options_.poses != BagPoses::None || !options_.pose_frame.empty()) useTransforms();
     if (options_.poses == BagPoses::Automatic || options_.poses == BagPoses::Topic) usePoseTopics();
     findLastPaths();
     const std::vector<MessagePlace>& messages = file_.messages();
     for (std::size_t i = 0; i < messages.size(); ++i) readMessage(i, messages[i]);
+    requireForwardTimes();
     content_.tree.finish();
     for (BagPoseTopic& topic : content_.pose_topics) topic.poses.finish();
     const auto has_no_poses = [](const BagPoseTopic& topic) { return topic.poses.empty(); };
@@ -157,6 +159,7 @@ class ContentReader {
     const nanoseconds time = timeOf(message, size.header.stamp, scans_without_stamp_);
     content_.scans.push_back({message, time, size.points, found->second});
     if (!size.has_range_limits) without_limits_.add(stampText(time));
+    if (size.has_unused_points) with_unused_.add(stampText(time));
   }
 
   /// Returns true if the pose can be used.
@@ -190,6 +193,18 @@ class ContentReader {
     content_.tree.add(transform.parent, transform.child, time, transform.pose, is_static);
   }
 
+  /// Throws FileError if the times of the scans step back: poses could not be told apart by their times.
+  void requireForwardTimes() const {
+    if (options_.log_times) return;
+    nanoseconds last = nanoseconds::min();
+    for (const BagScan& scan : content_.scans) {
+      if (last > scan.time && last - scan.time > kMostStepBack)
+        throw FileError(path_, "the times in the headers of " + shown(content_.scan_topic.name) + " step back by " +
+                                   stampText(last - scan.time) + " s to " + stampText(scan.time) + kResetAdvice);
+      last = std::max(last, scan.time);
+    }
+  }
+
   void addWarnings() {
     std::vector<std::string>& warnings = content_.warnings;
     const auto count = [](const Occurrences& some) { return std::to_string(some.count); };
@@ -205,6 +220,9 @@ class ContentReader {
     if (other_frames_.count > 0)
       warnings.push_back("the frames of the poses change, first in " + other_frames_.first +
                          ". All poses are used as if they had the frames of the last one");
+    if (with_unused_.count > 0)
+      warnings.push_back(count(with_unused_) + " clouds have room for more points than their width says, first at " +
+                         with_unused_.first + ". The points behind are not read");
     if (without_limits_.count > 0)
       warnings.push_back(count(without_limits_) +
                          " laser scans have range_max not greater than range_min, so all ranges are used; first at " +
@@ -219,7 +237,7 @@ class ContentReader {
   std::vector<Use> uses_;               // of each topic
   std::vector<std::size_t> last_path_;  // number of the last message of each pose topic
   std::unordered_map<std::string, std::size_t> frames_;
-  Occurrences scans_without_stamp_, poses_without_stamp_, faulty_, loops_, without_limits_, other_frames_;
+  Occurrences scans_without_stamp_, poses_without_stamp_, faulty_, loops_, without_limits_, with_unused_, other_frames_;
   BagContent content_;
 };
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gaussmap/core/pose.h"
+#include "io/formats/scan_file.h"
 #include "io/messages/bag_content.h"
 
 namespace gaussmap::detail {
@@ -15,7 +16,8 @@ namespace gaussmap::detail {
 struct AssignedBagPoses {
   std::vector<std::optional<Pose>> poses;  ///< one per scan
   std::string source;                      ///< "tf: lidar in map"; empty: no scan has a pose
-  std::string missing;                     ///< why scans have no pose, and what to do; empty: all have one
+  std::string map_frame;                   ///< frame of the poses
+  MissingPoses missing;                    ///< of scans without a pose
   bool in_fixed_frame = false;             ///< the points are in the fixed frame already
   std::vector<std::string> warnings;
 };

@@ -14,12 +14,13 @@ namespace {
 class OpenBagScans : public ScanFile {
  public:
   OpenBagScans(std::unique_ptr<MessageFile> file, std::filesystem::path path, BagContent content,
-               AssignedBagPoses assigned)
+               AssignedBagPoses assigned, bool mounted)
       : file_(std::move(file)),
         path_(std::move(path)),
         topic_(std::move(content.scan_topic)),
         scans_(std::move(content.scans)),
         assigned_(std::move(assigned)),
+        mounted_(mounted),
         warnings_(file_->warnings()) {
     warnings_.insert(warnings_.end(), content.warnings.begin(), content.warnings.end());
     warnings_.insert(warnings_.end(), assigned_.warnings.begin(), assigned_.warnings.end());
@@ -29,7 +30,9 @@ class OpenBagScans : public ScanFile {
   std::size_t size() const override { return scans_.size(); }
   FileScanInfo info(std::size_t scan) const override {
     const BagScan& one = scans_.at(scan);
-    return {topic_.name + " " + stampText(one.time), one.points, assigned_.poses.at(scan), one.time};
+    FileScanInfo info{topic_.name + " " + stampText(one.time), one.points, std::nullopt, one.time};
+    (mounted_ ? info.mounting : info.pose) = assigned_.poses.at(scan);
+    return info;
   }
   std::unique_ptr<ScanReader> open(std::size_t scan) const override {
     const MessagePlace& place = scans_.at(scan).place;
@@ -38,7 +41,8 @@ class OpenBagScans : public ScanFile {
   }
   std::vector<std::string> warnings() const override { return warnings_; }
   std::string poseSource() const override { return assigned_.source; }
-  std::string missingPoses() const override { return assigned_.missing; }
+  MissingPoses missingPoses() const override { return assigned_.missing; }
+  std::string mapFrame() const override { return assigned_.map_frame; }
   bool inMapFrame() const override { return assigned_.in_fixed_frame; }
 
  private:
@@ -47,6 +51,7 @@ class OpenBagScans : public ScanFile {
   TopicGroup topic_;
   std::vector<BagScan> scans_;
   AssignedBagPoses assigned_;
+  bool mounted_;  // true: assigned_.poses are mountings
   std::vector<std::string> warnings_;
 };
 
@@ -56,7 +61,8 @@ std::unique_ptr<ScanFile> openBagScans(std::unique_ptr<MessageFile> file, const 
                                        const BagOptions& options) {
   BagContent content = readBagContent(*file, path, options);
   AssignedBagPoses assigned = assignBagPoses(path, content, options);
-  return std::make_unique<OpenBagScans>(std::move(file), path, std::move(content), std::move(assigned));
+  return std::make_unique<OpenBagScans>(std::move(file), path, std::move(content), std::move(assigned),
+                                        options.poses == BagPoses::None);
 }
 
 }  // namespace gaussmap::detail

@@ -28,6 +28,8 @@ struct BagOptions {
   std::string fixed_frame;               ///< empty: of tf: map, else odom, else the root; of a topic: its frame_id
   std::optional<double> max_time_gap = {};  ///< [s]; default: see openBagScans()
   bool log_times = false;                   ///< use the times of recording instead of those in the headers
+  bool has_extrinsic = false;               ///< the caller knows where the sensor is in the frame whose poses these are
+  bool points_in_map = false;  ///< the points are in the map frame; the poses give only the positions of the sensor
 };
 
 /// Opens the scans of a recording. Reads all messages of the topic once, and those with poses; keeps no points.
@@ -36,21 +38,28 @@ struct BagOptions {
 /// time: "/points 1700000000.100000000".
 ///
 /// The pose is that of the sensor frame (header.frame_id of the scan) in the fixed frame, at the time of the scan:
-/// - From tf: each transform is interpolated between its neighbours in time. These are at most 1 s apart by default.
-///   There is no extrapolation, except by 1 ms, because some programs round times. With max_time_gap, both limits are
-///   max_time_gap. A transform that never changes is valid at all times.
+/// - From tf: each transform is interpolated between its neighbours in time, which are at most 1 s apart. There is no
+///   extrapolation, except by 1 ms, because some programs round times. A transform that never changes is valid at all
+///   times. With pose_frame and has_extrinsic, it is the pose of that frame.
 /// - From a topic: interpolated between the two messages around the scan, if they are at most four limits apart; else
-///   the nearest message, at most one limit away. The limit is max_time_gap, by default half of the median interval
-///   between scans. Of a nav_msgs/Path, the last message counts. The transform from the pose's frame to the sensor
-///   frame comes from tf, if there is one.
-/// - If the points are in the fixed frame already, the pose is the identity.
+///   the nearest message, at most one limit away. The limit is half of the median interval between scans. Of a
+///   nav_msgs/Path, the last message counts. The transform from the pose's frame to the sensor frame comes from tf,
+///   unless has_extrinsic is set.
+/// - If the frame of the scans is a fixed frame (map, odom, world, earth or camera_init, also with a namespace), or the
+///   frame of the poses, the points are not moved by the poses of the sensor, and inMapFrame() is true. With
+///   points_in_map, the poses are then the positions of the sensor.
 ///
-/// A scan without a pose has none in its info(); missingPoses() gives their number and the reason for the first one, or
-/// says why the recording has no poses.
+/// With max_time_gap, the nearest pose counts if it is at most that far away, and neighbours can be twice as far apart.
+/// There is a warning if poses were taken without interpolation.
+///
+/// A scan without a pose has none in its info(), and missingPoses() says why. With BagPoses::None and a pose_frame,
+/// FileScanInfo::mounting is the pose of the sensor in this frame, from tf.
 ///
 /// Throws FileError in these cases:
 /// - The topic of the scans or of the poses is missing, of a wrong type, or not clear. The message lists the topics.
-/// - The poses must come from tf, but no transforms connect the frames. The message lists the frames.
+/// - A frame that the options name is missing, or no transforms connect the frames. The message lists the frames.
+/// - The poses are those of another frame, and nothing says where the sensor is on it.
+/// - The times in the headers step back, for example because simulated time was reset.
 /// - A message is damaged.
 std::unique_ptr<ScanFile> openBagScans(std::unique_ptr<MessageFile> file, const std::filesystem::path& path,
                                        const BagOptions& options = {});

@@ -7,7 +7,6 @@
 
 #include "io/messages/message_scans.h"
 #include "io/messages/ros_messages.h"
-#include "io/messages/timed_poses.h"
 
 namespace gaussmap::detail {
 namespace {
@@ -24,6 +23,15 @@ std::vector<TopicGroup> scanTopics(const std::vector<TopicGroup>& topics, const 
     if (topic.is_readable && topic.messages > 0 && (type.empty() ? isScanType(topic.type) : topic.type == type))
       found.push_back(topic);
   return found;
+}
+
+/// Returns what to do if a topic holds the packets of a lidar.
+std::string packetHint(const std::vector<TopicGroup>& topics) {
+  for (const TopicGroup& topic : topics)
+    for (const char* const part : {"Packet", "VelodyneScan", "PandarScan", "rslidarScan", "livox", "LidarScan"})
+      if (topic.messages > 0 && topic.type.find(part) != std::string::npos)
+        return "; " + shown(topic.name) + " holds the packets of a lidar: its driver converts them to PointCloud2";
+  return "";
 }
 
 }  // namespace
@@ -62,8 +70,8 @@ std::string listTopics(const std::vector<TopicGroup>& topics) {
   return text.empty() ? "none" : text;
 }
 
-TopicGroup chooseScanTopic(const std::filesystem::path& path, const std::vector<TopicGroup>& topics,
-                           const std::string& name) {
+TopicGroup chooseScanTopic(const std::filesystem::path& path, const MessageFile& file,
+                           const std::vector<TopicGroup>& topics, const std::string& name) {
   if (!name.empty()) {
     std::vector<TopicGroup> named;
     for (const TopicGroup& topic : topics)
@@ -89,8 +97,13 @@ TopicGroup chooseScanTopic(const std::filesystem::path& path, const std::vector<
       throw FileError(path, "has several topics with scans: " + listTopics(found) + "; choose one with --topic " +
                                 shown(found.front().name));
   }
-  throw FileError(path, "has no messages of sensor_msgs/PointCloud2 or sensor_msgs/LaserScan; its topics are " +
-                            listTopics(topics));
+  std::string text = "has no messages of sensor_msgs/PointCloud2 or sensor_msgs/LaserScan; its topics are " +
+                     listTopics(topics) + packetHint(topics);
+  for (const TopicGroup& topic : topics)
+    if (isScanType(topic.type) && topic.messages > 0 && !topic.is_readable)
+      text += "; " + shown(topic.name) + " is written in an encoding that is not read (only CDR and that of ROS 1 are)";
+  for (const std::string& warning : file.warnings()) text += "; " + warning;
+  throw FileError(path, text);
 }
 
 BagSummary bagSummary(const MessageFile& file, const std::filesystem::path& path) {
@@ -98,12 +111,11 @@ BagSummary bagSummary(const MessageFile& file, const std::filesystem::path& path
   std::vector<std::size_t> group_of(file.topics().size(), 0);
   for (std::size_t i = 0; i < groups.size(); ++i)
     for (const std::size_t topic : groups[i].indices) group_of[topic] = i;
-  std::vector<const MessagePlace*> first(groups.size(), nullptr);
-  std::vector<std::vector<std::chrono::nanoseconds>> times(groups.size());
+  std::vector<const MessagePlace*> first(groups.size(), nullptr), last(groups.size(), nullptr);
   for (const MessagePlace& message : file.messages()) {
     const std::size_t group = group_of.at(message.topic);
     if (!first[group]) first[group] = &message;
-    times[group].push_back(safeTime(message.log_time));
+    last[group] = &message;
   }
   BagSummary summary{file.kind(), {}, file.warnings()};
   for (std::size_t i = 0; i < groups.size(); ++i) {
@@ -112,9 +124,8 @@ BagSummary bagSummary(const MessageFile& file, const std::filesystem::path& path
     topic.type = groups[i].type;
     topic.messages = groups[i].messages;
     if (first[i]) {
-      topic.first = times[i].front();
-      topic.last = times[i].back();
-      topic.median_interval = medianInterval(std::move(times[i]));
+      topic.first = safeTime(first[i]->log_time);
+      topic.last = safeTime(last[i]->log_time);
       const MessageEncoding encoding = file.topics()[first[i]->topic].encoding;
       if (encoding != MessageEncoding::Other && hasHeader(topic.type)) {
         try {

@@ -38,16 +38,15 @@ std::string listTopics(const std::vector<TopicGroup>& topics);
 /// Returns the topic with the scans: the one with this name, or, if the name is empty, the only topic of
 /// sensor_msgs/PointCloud2, else of sensor_msgs/LaserScan, else of sensor_msgs/PointCloud. Topics without messages do
 /// not count. A slash in front of the name may be missing. Throws FileError that lists the topics.
-TopicGroup chooseScanTopic(const std::filesystem::path& path, const std::vector<TopicGroup>& topics,
-                           const std::string& name);
+TopicGroup chooseScanTopic(const std::filesystem::path& path, const MessageFile& file,
+                           const std::vector<TopicGroup>& topics, const std::string& name);
 
 /// One topic of a recording, for a table.
 struct BagTopicSummary {
   std::string name, type;
   std::size_t messages = 0;
-  std::optional<std::chrono::nanoseconds> first, last;      ///< times of recording
-  std::optional<std::chrono::nanoseconds> median_interval;  ///< between messages
-  std::string frame;                                        ///< frame_id of the first message; empty: unknown
+  std::optional<std::chrono::nanoseconds> first, last;  ///< times of recording
+  std::string frame;                                    ///< frame_id of the first message; empty: unknown
 };
 
 /// The topics of a recording.

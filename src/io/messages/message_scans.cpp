@@ -204,8 +204,10 @@ void checkAngles(const LaserMessage& laser, const MessageOrigin& origin) {
 }
 
 MessageScanSize sizeOf(CloudMessage cloud, const MessageOrigin& origin) {
-  const std::size_t points = layoutOf(cloud, origin).points;
-  return {std::move(cloud.header), points, true};
+  const CloudLayout layout = layoutOf(cloud, origin);
+  // Rows can have padding, but a single row needs none.
+  const bool has_unused = cloud.height == 1 && layout.row_step >= (layout.width + 1) * layout.point_step;
+  return {std::move(cloud.header), layout.points, has_unused, true};
 }
 
 }  // namespace
@@ -223,12 +225,12 @@ MessageScanSize scanSize(const std::string& type, std::string_view message, Mess
   if (type == "sensor_msgs/LaserScan") {
     LaserMessage laser = decodeLaser(message, encoding, origin);
     checkAngles(laser, origin);
-    return {std::move(laser.header), laser.ranges.size(), laser.range_max > laser.range_min};
+    return {std::move(laser.header), laser.ranges.size(), false, laser.range_max > laser.range_min};
   }
   if (type == "sensor_msgs/PointCloud") {
     OldCloudMessage cloud = decodeOldCloud(message, encoding, origin);
     checkChannels(cloud, origin);
-    return {std::move(cloud.header), cloud.coordinates.size() / 3, true};
+    return {std::move(cloud.header), cloud.coordinates.size() / 3, false, true};
   }
   return sizeOf(decodeCloud(message, encoding, origin), origin);
 }

@@ -25,7 +25,8 @@ bool isCloudType(const std::string& type);
 struct MessageScanSize {
   MessageHeader header;
   std::size_t points = 0;
-  bool has_range_limits = true;  ///< false: a LaserScan whose range_max is not greater than range_min
+  bool has_unused_points = false;  ///< a cloud of one row whose data hold more points than width says
+  bool has_range_limits = true;    ///< false: a LaserScan whose range_max is not greater than range_min
 };
 
 /// Returns the header and the number of points of a scan. Throws FileError if the message is damaged.

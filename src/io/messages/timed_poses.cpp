@@ -25,6 +25,7 @@ void TimedPoses::add(nanoseconds time, const Pose& pose) {
   const Pose unit = normalised(pose);
   if (!times_.empty()) {
     sorted_ = sorted_ && times_.back() < time;
+    step_back_ = std::max(step_back_, times_.back() - time);
     constant_ = constant_ && areEqual(poses_.back(), unit);
   }
   times_.push_back(time);
@@ -51,7 +52,7 @@ void TimedPoses::finish() {
   sorted_ = true;
 }
 
-std::optional<Pose> TimedPoses::at(nanoseconds time, const PoseTimeLimits& limits) const {
+std::optional<Pose> TimedPoses::at(nanoseconds time, const PoseTimeLimits& limits, PoseLookup& lookup) const {
   if (times_.empty()) return std::nullopt;
   const auto bound = std::lower_bound(times_.begin(), times_.end(), time);
   const auto after = static_cast<std::size_t>(bound - times_.begin());
@@ -62,9 +63,14 @@ std::optional<Pose> TimedPoses::at(nanoseconds time, const PoseTimeLimits& limit
       return between(poses_[after - 1], poses_[after],
                      static_cast<double>(part.count()) / static_cast<double>(step.count()));
     if (std::min(part, step - part) > limits.hold) return std::nullopt;
+    lookup.held = std::max(lookup.held, std::min(part, step - part));
     return poses_[part <= step - part ? after - 1 : after];
   }
-  if (distance(time) > limits.hold) return std::nullopt;
+  if (distance(time) > limits.hold) {
+    lookup.is_outside = true;
+    return std::nullopt;
+  }
+  lookup.held = std::max(lookup.held, distance(time));
   return after == 0 ? poses_.front() : poses_.back();
 }
 

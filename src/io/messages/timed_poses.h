@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "gaussmap/core/pose.h"
@@ -14,6 +15,13 @@ namespace gaussmap::detail {
 struct PoseTimeLimits {
   std::chrono::nanoseconds between{0};  ///< interpolate between two poses that are at most this far apart
   std::chrono::nanoseconds hold{0};     ///< otherwise take the nearest pose, which is at most this far away
+};
+
+/// What happened when poses were looked up at a time.
+struct PoseLookup {
+  std::string reason;                ///< why there is no pose
+  bool is_outside = false;           ///< there is no pose, because the time is before the first or after the last one
+  std::chrono::nanoseconds held{0};  ///< largest distance to a pose that was taken without interpolation
 };
 
 /// Poses at times. Call finish() once after the last add(); then all functions are thread-safe.
@@ -33,9 +41,12 @@ class TimedPoses {
   /// Returns the first pose. There must be one.
   const Pose& front() const { return poses_.front(); }
 
+  /// Returns the largest step back between poses in the order in which they were added; 0 if there is none.
+  std::chrono::nanoseconds stepBack() const { return step_back_; }
+
   /// Returns the pose at a time: linear interpolation of the translation, slerp of the rotation. Returns std::nullopt
-  /// if the limits do not allow it. Takes O(log n).
-  std::optional<Pose> at(std::chrono::nanoseconds time, const PoseTimeLimits& limits) const;
+  /// if the limits do not allow it. Sets all members of `lookup` but the reason. Takes O(log n).
+  std::optional<Pose> at(std::chrono::nanoseconds time, const PoseTimeLimits& limits, PoseLookup& lookup) const;
   /// Returns the distance from a time to the nearest time of a pose. There must be one.
   std::chrono::nanoseconds distance(std::chrono::nanoseconds time) const;
 
@@ -44,6 +55,7 @@ class TimedPoses {
   std::vector<Pose> poses_;
   bool sorted_ = true;
   bool constant_ = true;
+  std::chrono::nanoseconds step_back_{0};
 };
 
 /// Returns the median of the steps between different times, or std::nullopt if there are not two different times.

@@ -2,6 +2,7 @@
 #include "io/messages/transform_tree.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "io/messages/wire_reader.h"
@@ -100,13 +101,14 @@ std::optional<std::vector<std::size_t>> TransformTree::linksAbove(std::size_t fr
   return links;
 }
 
-std::optional<std::string> TransformTree::rootOf(const std::string& frame) const {
+std::vector<std::string> TransformTree::above(const std::string& frame) const {
+  std::vector<std::string> names;
   const auto found = indices_.find(frameName(frame));
-  if (found == indices_.end()) return std::nullopt;
+  if (found == indices_.end()) return names;
   std::string ignored;
-  const std::optional<std::vector<std::size_t>> links = linksAbove(found->second, ignored);
-  if (!links) return std::nullopt;
-  return links->empty() ? frames_[found->second] : frames_[links_[links->back()].parent];
+  for (const std::size_t link : linksAbove(found->second, ignored).value_or(std::vector<std::size_t>()))
+    names.push_back(frames_[links_[link].parent]);
+  return names;
 }
 
 std::optional<TransformChain> TransformTree::chain(const std::string& target, const std::string& source,
@@ -137,12 +139,12 @@ std::optional<TransformChain> TransformTree::chain(const std::string& target, co
   for (const std::size_t link : *down) chain.steps.push_back({link, true});
   for (auto link = up->rbegin(); link != up->rend(); ++link) chain.steps.push_back({*link, false});
   chain.moves = std::any_of(chain.steps.begin(), chain.steps.end(),
-                            [this](const TransformChain::Step& step) { return links_[step.link].poses.size() > 1; });
+                            [this](const TransformChain::Step& step) { return !links_[step.link].poses.isConstant(); });
   return chain;
 }
 
 std::optional<Pose> TransformTree::pose(const TransformChain& chain, std::chrono::nanoseconds time,
-                                        const PoseTimeLimits& limits, std::string& reason) const {
+                                        const PoseTimeLimits& limits, PoseLookup& lookup) const {
   Pose product;
   for (const TransformChain::Step& step : chain.steps) {
     const Link& link = links_[step.link];
@@ -152,25 +154,41 @@ std::optional<Pose> TransformTree::pose(const TransformChain& chain, std::chrono
     } else if (link.poses.isConstant()) {
       one = link.poses.front();
     } else {
-      one = link.poses.at(time, limits);
+      one = link.poses.at(time, limits, lookup);
     }
     if (!one) {
       const bool is_before = time < link.poses.first();
-      reason = "the transform " + linkName(link);
-      if (is_before || time > link.poses.last())
-        reason += std::string(is_before ? " starts at " : " ends at ") +
-                  stampText(is_before ? link.poses.first() : link.poses.last());
+      lookup.reason = "the transform " + linkName(link);
+      if (lookup.is_outside)
+        lookup.reason += std::string(is_before ? " starts at " : " ends at ") +
+                         stampText(is_before ? link.poses.first() : link.poses.last());
       else
-        reason += " has a gap there: the nearest is " + stampText(link.poses.distance(time)) + " s away";
+        lookup.reason += " has a gap there: the nearest is " + stampText(link.poses.distance(time)) + " s away";
       return std::nullopt;
     }
     product = product * (step.inverse ? one->inverse() : *one);
   }
-  if (const std::string fault = poseFault(product); !fault.empty()) {
-    reason = fault;
-    return std::nullopt;
+  lookup.reason = poseFault(product);
+  return lookup.reason.empty() ? std::optional(product) : std::nullopt;
+}
+
+std::optional<std::pair<std::chrono::nanoseconds, std::chrono::nanoseconds>> TransformTree::timesOf(
+    const TransformChain& chain) const {
+  std::optional<std::pair<std::chrono::nanoseconds, std::chrono::nanoseconds>> times;
+  for (const TransformChain::Step& step : chain.steps) {
+    const TimedPoses& poses = links_[step.link].poses;
+    if (poses.empty() || poses.isConstant()) continue;
+    if (!times) times = {poses.first(), poses.last()};
+    times = {std::max(times->first, poses.first()), std::min(times->second, poses.last())};
   }
-  return product;
+  return times;
+}
+
+void TransformTree::requireForwardTimes(const TransformChain& chain, std::chrono::nanoseconds limit) const {
+  for (const TransformChain::Step& step : chain.steps)
+    if (const Link& link = links_[step.link]; !link.poses.isConstant() && link.poses.stepBack() > limit)
+      throw std::runtime_error("the times of the transform " + linkName(link) + " step back by " +
+                               stampText(link.poses.stepBack()) + " s");
 }
 
 }  // namespace gaussmap::detail

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "gaussmap/core/pose.h"
@@ -24,7 +25,7 @@ struct TransformChain {
     bool inverse = false;
   };
   std::vector<Step> steps;  ///< from the target to the source: the product of all of them maps source to target
-  bool moves = false;       ///< true: a transform is not static and has more than one time
+  bool moves = false;       ///< true: a transform has different values at different times
 };
 
 /// The tree of frames that the messages of /tf and /tf_static describe. Add all transforms, then call finish() once;
@@ -40,22 +41,28 @@ class TransformTree {
   bool empty() const { return frames_.empty(); }
   /// Returns true if a transform has this frame as child or parent.
   bool has(const std::string& frame) const { return indices_.count(frameName(frame)) > 0; }
+  /// Returns the frames above `frame`, the nearest first; empty if there are none or if they form a cycle.
+  std::vector<std::string> above(const std::string& frame) const;
+  /// Returns the names of all frames.
+  const std::vector<std::string>& names() const { return frames_; }
   /// Returns the names of the frames for messages: "base_link, lidar, odom".
   std::string frames() const;
-  /// Returns the frame above `frame` that has no parent. Returns std::nullopt if the frame is not in the tree, or if
-  /// its parents form a cycle.
-  std::optional<std::string> rootOf(const std::string& frame) const;
-
   /// Returns the way from `source` to `target`: pose(chain, time) maps points of `source` to `target`. Returns
   /// std::nullopt if there is none, and says why in `reason`: a frame is missing, the frames are not connected, or the
   /// parents of a frame form a cycle.
   std::optional<TransformChain> chain(const std::string& target, const std::string& source, std::string& reason) const;
   /// Returns the transform of a chain at a time. Returns std::nullopt if a transform is not known at that time, and
-  /// says which one in `reason`. Takes O(log n) per transform of the chain.
+  /// says which one in lookup.reason. Takes O(log n) per transform of the chain.
   ///
   /// A transform that has the same value in the whole recording is valid at all times.
   std::optional<Pose> pose(const TransformChain& chain, std::chrono::nanoseconds time, const PoseTimeLimits& limits,
-                           std::string& reason) const;
+                           PoseLookup& lookup) const;
+  /// Returns the first and the last time of the moving transforms of a chain; std::nullopt if none moves.
+  std::optional<std::pair<std::chrono::nanoseconds, std::chrono::nanoseconds>> timesOf(
+      const TransformChain& chain) const;
+  /// Throws std::runtime_error if the times of a moving transform of the chain step back by more than `limit` in the
+  /// order of the recording.
+  void requireForwardTimes(const TransformChain& chain, std::chrono::nanoseconds limit) const;
 
   /// Returns warnings about the tree, for example of a frame with several parents. Call after finish().
   const std::vector<std::string>& warnings() const { return warnings_; }

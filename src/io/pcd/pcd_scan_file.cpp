@@ -61,7 +61,8 @@ std::string PcdScanFile::kind() const {
 
 FileScanInfo PcdScanFile::info(std::size_t) const {
   const PcdHeader& header = reader_.header();
-  return {"", reader_.size(), header.viewpoint, std::nullopt, header.viewpoint_step, reader_.fingerprint()};
+  return {"",           reader_.size(),        header.viewpoint,     std::nullopt,
+          std::nullopt, header.viewpoint_step, reader_.fingerprint()};
 }
 
 std::unique_ptr<ScanReader> PcdScanFile::open(std::size_t) const {

@@ -11,6 +11,9 @@
 
 namespace gaussmap::detail {
 
+/// ScanFile::poseSource() of PCD files.
+inline constexpr const char* kViewpointSource = "VIEWPOINT of each scan";
+
 /// A PCD file as a file with one scan.
 class PcdScanFile : public ScanFile {
  public:
@@ -23,7 +26,7 @@ class PcdScanFile : public ScanFile {
   std::size_t size() const override { return 1; }
   FileScanInfo info(std::size_t scan) const override;
   std::unique_ptr<ScanReader> open(std::size_t scan) const override;
-  std::string poseSource() const override { return "VIEWPOINT of each scan"; }
+  std::string poseSource() const override { return kViewpointSource; }
   std::size_t memoryOf(std::size_t scan) const override;
   void releasePages() const override { reader_.releasePages(); }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,24 @@ namespace {
 
 bool fitsFloat(double value) {
   return !std::isfinite(value) || static_cast<double>(static_cast<float>(value)) == value;
+}
+
+/// Returns true if a value is whole by its meaning, so that scans of one recording get the same type.
+bool isWhole(const std::string& name) {
+  static const std::set<std::string> kWholeNames = {"rgb",
+                                                    "ring",
+                                                    "label",
+                                                    "row",
+                                                    "column",
+                                                    "return_number",
+                                                    "classification",
+                                                    "number_of_returns",
+                                                    "user_data",
+                                                    "point_source_id",
+                                                    "withheld",
+                                                    "overlap",
+                                                    "scanner_channel"};
+  return kWholeNames.count(name) > 0;
 }
 
 bool fitsUnsigned(double value) {
@@ -66,10 +85,10 @@ PcdRecords recordsOf(const ScanReader& reader, const Pose& viewpoint) {
   for (const char* const name : {"x", "y", "z"}) addField(name, 'F', floats ? 4 : 8, records);
   for (const std::string& name : reader.valueNames()) {
     std::vector<double> values = reader.values(name);
-    if (std::all_of(values.begin(), values.end(), fitsUnsigned))
+    if (isWhole(name) && std::all_of(values.begin(), values.end(), fitsUnsigned))
       addField(name, 'U', 4, records);
     else
-      addField(name, 'F', std::all_of(values.begin(), values.end(), fitsFloat) ? 4 : 8, records);
+      addField(name, 'F', name != "time" && std::all_of(values.begin(), values.end(), fitsFloat) ? 4 : 8, records);
     columns.push_back(std::move(values));
   }
   records.bytes.resize(reader.size() * records.record_size);

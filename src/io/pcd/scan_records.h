@@ -7,7 +7,8 @@
 namespace gaussmap::detail {
 
 /// Returns the points and all values of a scan that is not a PCD file. Coordinates and values become floats (F 4) if
-/// floats hold them exactly, whole numbers become U 4 if they are in its range, and the rest become doubles (F 8).
+/// floats hold them exactly, else doubles (F 8). Times always become doubles. Colours, and values that count or number
+/// something, such as "ring", become U 4 if all are whole.
 /// Throws FileError like ScanReader::read().
 GAUSSMAP_API PcdRecords recordsOf(const ScanReader& reader, const Pose& viewpoint);
 

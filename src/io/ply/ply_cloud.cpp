@@ -135,6 +135,11 @@ class PlyCloud : public ScanFile {
       return std::any_of(properties.begin(), properties.end(),
                          [name](const PlyProperty& property) { return property.name == name; });
     };
+    if (const std::size_t faces = vertices.faces(); faces > 0)
+      warnings.push_back("the file is a mesh with " + std::to_string(faces) +
+                         " faces: its vertices are used as points, and the faces are ignored");
+    if (vertices.hasElement("camera"))
+      warnings.push_back("the pose in the element camera, as PCL writes it, is not used; give poses with --poses FILE");
     if (has("scale_0") && has("rot_0"))
       warnings.push_back("the vertices are Gaussians (scale_0, rot_0), not points: only their centres are used");
     return warnings;

@@ -162,6 +162,18 @@ PlyVertices::PlyVertices(const std::filesystem::path& path, PlyHeader header, st
   if (is_ascii || hasLists(vertex())) record_size_ = 0;
 }
 
+bool PlyVertices::hasElement(std::string_view name) const {
+  return std::any_of(header_.elements.begin(), header_.elements.end(),
+                     [name](const PlyElement& element) { return element.name == name && element.count > 0; });
+}
+
+std::size_t PlyVertices::faces() const {
+  std::size_t faces = 0;
+  for (const PlyElement& element : header_.elements)
+    if (element.name == "face") faces += element.count;
+  return faces;
+}
+
 std::size_t PlyVertices::bytesBehind() const {
   if (!hasRecords() || vertex_ + 1 < header_.elements.size()) return 0;
   return bytes_.size() - first_ - size() * record_size_;

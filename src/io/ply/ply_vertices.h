@@ -22,6 +22,10 @@ class PlyVertices {
   std::size_t size() const { return vertex().count; }
   const PlyElement& vertex() const { return header_.elements[vertex_]; }
   PlyEncoding encoding() const { return header_.encoding; }
+  /// Returns true if the file has an element of this name with at least one entry.
+  bool hasElement(std::string_view name) const;
+  /// Returns the number of faces; 0: the file is not a mesh.
+  std::size_t faces() const;
   /// Returns true if all vertices have the same number of bytes, so that decode() can be used: the file is binary, and
   /// the vertices have no lists.
   bool hasRecords() const { return record_size_ > 0; }

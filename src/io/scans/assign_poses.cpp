@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "core/same_pose.h"
+#include "io/pcd/pcd_scan_file.h"
 #include "io/scans/name_numbers.h"
 #include "io/scans/pose_times.h"
 #include "io/scans/scan_names.h"
@@ -117,6 +118,8 @@ void readPoses(std::vector<ScanPose>& scans, const std::vector<ScanKey>& keys, c
   for (std::size_t i = 0; i < scans.size(); ++i)
     if (matched.poses[i]) {
       scans[i].pose = *matched.poses[i];
+      if (scans[i].mounting && poseFault(scans[i].pose).empty())
+        scans[i].pose = normalised(scans[i].pose) * *scans[i].mounting;
       scans[i].position_step = 0.0;
       scans[i].in_map_frame = false;
     }
@@ -131,24 +134,48 @@ void addOnce(const std::string& text, std::vector<std::string>& texts) {
 /// Takes the poses that the files have. Throws FileError if scans need a pose, but have none.
 void posesOfFiles(const std::vector<ScanPose>& scans, const FindScansOptions& options, AssignedPoses& assigned) {
   std::vector<std::string> sources, missing;
+  bool without_source = false;
   for (std::size_t i = 0; i < scans.size(); ++i) {
     const ScanPose& scan = scans[i];
-    if (scan.in_map_frame) addOnce("none needed: the points are in the map frame", sources);
+    if (scan.in_map_frame && (!scan.file_poses || scan.file_poses->source.empty()))
+      addOnce("none needed: the points are in the map frame", sources);
     if (!scan.file_poses) continue;
     addOnce(scan.file_poses->source, sources);
-    if (scan.has_pose || scan.file_poses->missing.empty() || options.frame == ScanFrame::Map) continue;
+    if (!scan.has_pose && !scan.in_map_frame && scan.file_poses->missing.reason.empty()) without_source = true;
+    const MissingPoses& why = scan.file_poses->missing;
+    if (scan.has_pose || why.reason.empty() || options.frame == ScanFrame::Map) continue;
     const bool may_be_alone = scans.size() == 1 && options.files.recording.poses.empty();
-    if (!may_be_alone && !options.skip_without_pose) throw FileError(scan.path, scan.file_poses->missing);
-    addOnce(scan.path.string() + ": " + scan.file_poses->missing, missing);
+    if (!may_be_alone && !options.skip_without_pose) throw FileError(scan.path, why.reason + "; " + why.advice);
+    addOnce(scan.path.string() + ": " + why.reason, missing);
     if (may_be_alone) continue;
     assigned.left_out[i] = true;
     assigned.without_pose.push_back(scan.label());
   }
   if (!scans.empty() && assigned.without_pose.size() == scans.size())
-    throw FileError(scans.front().path, scans.front().file_poses->missing);
+    throw FileError(scans.front().path,
+                    scans.front().file_poses->missing.reason + "; " + scans.front().file_poses->missing.advice);
   assigned.warnings.insert(assigned.warnings.end(), missing.begin(), missing.end());
   for (const std::string& source : sources) assigned.description += (assigned.description.empty() ? "" : "; ") + source;
-  if (sources.empty()) assigned.description = "none in the files, so the sensor is at the origin";
+  if (sources.empty())
+    assigned.description = "none in the files, so the sensor is at the origin";
+  else if (without_source)
+    assigned.description += "; none in the other files";
+}
+
+/// Throws FileError if the options change poses that a scan does not have, or whose meaning is known.
+void requirePosesToChange(const std::vector<ScanPose>& scans, const FindScansOptions& options) {
+  const bool turns = options.convention != PoseConvention::SensorToMap;
+  const bool swaps = options.convention == PoseConvention::WFirst || options.convention == PoseConvention::WLast;
+  const bool moves = options.extrinsic && !samePose(options.extrinsic->pose, Pose());
+  for (const ScanPose& scan : scans) {
+    if (turns && !scan.has_pose) throw FileError(scan.path, "has no pose, so --pose-convention has nothing to convert");
+    if (swaps && scan.file_poses && scan.file_poses->source != kViewpointSource)
+      throw FileError(scan.path,
+                      "the order of its quaternions is known, so --pose-convention w-first and w-last have "
+                      "no meaning");
+    if (moves && scan.in_map_frame)
+      throw FileError(scan.path, "the points are in the map frame, so --extrinsic has nothing to move");
+  }
 }
 
 /// The names and times of the scans.
@@ -185,10 +212,12 @@ AssignedPoses assignPoses(std::vector<ScanPose>& scans, const FindScansOptions& 
   const std::vector<ScanKey> keys = keysOf(scans);
   setTimes(keys, assigned);
   std::optional<Extrinsic> extrinsic = options.extrinsic;
-  if (options.poses.empty())
+  if (options.poses.empty()) {
     posesOfFiles(scans, options, assigned);
-  else
+    requirePosesToChange(scans, options);
+  } else {
     readPoses(scans, keys, options, assigned, extrinsic);
+  }
   for (const ScanPose& scan : scans) assigned.as_read.push_back(scan.pose);
   const bool moves = extrinsic && !samePose(extrinsic->pose, Pose());
   if (!moves && options.convention == PoseConvention::SensorToMap) return assigned;

@@ -2,6 +2,7 @@
 // Finds scans and their poses, and checks both.
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <memory>
 #include <set>
 #include <system_error>
@@ -10,6 +11,7 @@
 #include "gaussmap/io/scans/file_scans.h"
 #include "io/scans/assign_poses.h"
 #include "io/scans/keeping_points.h"
+#include "io/scans/list_scans.h"
 #include "io/scans/pose_checks.h"
 #include "io/scans/scan_files.h"
 #include "sensor/sensor_motion.h"
@@ -36,7 +38,27 @@ struct ListedScans {
   std::vector<FileScan> scans;
   std::vector<ScanPose> poses;
   std::vector<std::string> warnings;
+  std::map<std::string, std::filesystem::path> map_frames;  // the first recording with poses in this frame
+  bool warned_of_frames = false;
 };
+
+/// Throws FileError if the poses of two recordings are in different frames. Warns if they are in frames of the same
+/// name that begin where the robot starts.
+void checkMapFrame(const std::filesystem::path& path, const std::string& frame, ListedScans& listed) {
+  if (listed.map_frames.empty()) {
+    listed.map_frames.emplace(frame, path);
+    return;
+  }
+  const auto& [first_frame, first_path] = *listed.map_frames.begin();
+  if (first_frame != frame)
+    throw FileError(path, "the poses are in the frame " + frame + ", but those of " + first_path.string() + " are in " +
+                              first_frame + "; name a frame that all recordings have with --fixed-frame");
+  const std::string last = frame.substr(frame.find_last_of('/') + 1);
+  if ((last != "odom" && last != "camera_init") || listed.warned_of_frames) return;
+  listed.warned_of_frames = true;
+  listed.warnings.push_back(path.string() + " and " + first_path.string() + " have poses in " + frame +
+                            ", which begins at another place in each run; the map is wrong if they are different runs");
+}
 
 /// Adds all scans of a file.
 void addScansOf(const std::filesystem::path& path, ListedScans& listed) {
@@ -53,10 +75,12 @@ void addScansOf(const std::filesystem::path& path, ListedScans& listed) {
     scan.position_step = info.position_step;
     scan.has_pose = info.pose.has_value();
     scan.in_map_frame = file->inMapFrame();
+    scan.mounting = info.mounting;
     scan.file_poses = file_poses;
     scan.fingerprint =
         info.fingerprint != 0 ? info.fingerprint : std::hash<std::string>()(path.string() + ":" + std::to_string(i));
   }
+  if (const std::string frame = file->mapFrame(); !frame.empty()) checkMapFrame(path, frame, listed);
   for (const std::string& warning : file->warnings()) listed.warnings.push_back(path.string() + ": " + warning);
   file->releasePages();
 }
@@ -75,11 +99,10 @@ bool standsStill(FileScans& scans) {
 }  // namespace
 
 FoundScans findScans(const std::vector<std::filesystem::path>& inputs, const FindScansOptions& options) {
-  const std::vector<std::filesystem::path> paths = listScans(inputs);
   std::vector<std::string> warnings;
+  const std::vector<std::filesystem::path> paths = detail::listScans(inputs, warnings);
   warnOfScansGivenTwice(paths, warnings);
-  const OpenOptions opening{options.files, options.poses.empty(), options.matching.max_time_gap};
-  ListedScans listed{std::make_shared<ScanFiles>(opening), {}, {}, {}};
+  ListedScans listed{std::make_shared<ScanFiles>(openOptions(options)), {}, {}, {}, {}, false};
   for (const std::filesystem::path& path : paths) addScansOf(path, listed);
   warnings.insert(warnings.end(), listed.warnings.begin(), listed.warnings.end());
   std::vector<ScanPose>& checked = listed.poses;

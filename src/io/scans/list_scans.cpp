@@ -5,6 +5,8 @@
 #include <system_error>
 
 #include "gaussmap/io/scans/file_scans.h"
+#include "io/formats/message_file.h"
+#include "io/scans/list_scans.h"
 #include "io/scans/scan_names.h"
 
 namespace gaussmap {
@@ -24,6 +26,17 @@ std::string hintOfSubfolders(const std::filesystem::path& directory) {
       if (!scanExtension(file->path().filename()).empty())
         return ", but in its subdirectories: name them, for example " + (directory / "*").string() + "/" +
                file->path().filename().string();
+  }
+  return "";
+}
+
+/// Returns what to write if the scans may be texts. A directory can hold texts of other kinds, such as poses.
+std::string hintOfTexts(const std::filesystem::path& directory) {
+  std::error_code error;
+  for (std::filesystem::directory_iterator file(directory, error), end; !error && file != end; file.increment(error)) {
+    const std::string extension = file->path().extension().string();
+    if (extension == ".txt" || extension == ".csv" || extension == ".asc")
+      return "; if the " + extension + " files are scans, name them: " + (directory / "*").string() + extension;
   }
   return "";
 }
@@ -54,15 +67,20 @@ std::string countsOf(const FilesPerKind& files) {
   return text;
 }
 
-/// Returns the files of one kind. PCD files come before all others.
-std::vector<std::filesystem::path> scansIn(const std::filesystem::path& directory) {
+/// Returns the files of one kind. PCD files come before all others, then a warning says which files are not read.
+std::vector<std::filesystem::path> scansIn(const std::filesystem::path& directory, std::vector<std::string>& warnings) {
   FilesPerKind files = filesIn(directory);
-  if (files.empty()) throw FileError(directory, "no file of scans in this directory" + hintOfSubfolders(directory));
+  if (files.empty())
+    throw FileError(directory,
+                    "no file of scans in this directory" + hintOfSubfolders(directory) + hintOfTexts(directory));
   const auto pcds = files.find(".pcd");
   if (pcds == files.end() && files.size() > 1)
     throw FileError(directory, "holds files of several kinds: " + countsOf(files) +
                                    "; name those to read, for example " +
                                    (directory / ("*" + files.begin()->first)).string());
+  if (pcds != files.end() && files.size() > 1)
+    warnings.push_back(directory.string() + " holds files of several kinds: " + countsOf(files) +
+                       "; only the .pcd files are read");
   std::vector<std::filesystem::path> scans = std::move((pcds != files.end() ? pcds : files.begin())->second);
   std::sort(scans.begin(), scans.end(),
             [](const auto& a, const auto& b) { return naturalLess(a.filename().string(), b.filename().string()); });
@@ -72,14 +90,20 @@ std::vector<std::filesystem::path> scansIn(const std::filesystem::path& director
 }  // namespace
 
 std::vector<std::filesystem::path> listScans(const std::vector<std::filesystem::path>& inputs) {
+  std::vector<std::string> ignored;
+  return detail::listScans(inputs, ignored);
+}
+
+std::vector<std::filesystem::path> detail::listScans(const std::vector<std::filesystem::path>& inputs,
+                                                     std::vector<std::string>& warnings) {
   std::vector<std::filesystem::path> scans;
   for (const std::filesystem::path& input : inputs) {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(input, error);
     if (status.type() == std::filesystem::file_type::not_found) throw FileError(input, "does not exist");
     if (error) throw FileError(input, error.message());
-    if (std::filesystem::is_directory(status)) {
-      const std::vector<std::filesystem::path> found = scansIn(input);
+    if (std::filesystem::is_directory(status) && !isMessageFile(input)) {
+      const std::vector<std::filesystem::path> found = scansIn(input, warnings);
       scans.insert(scans.end(), found.begin(), found.end());
     } else {
       scans.push_back(input);

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/scans/open_scan_file.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <system_error>
 
+#include "io/bags/recording.h"
 #include "io/e57/e57_file.h"
 #include "io/files/gunzip.h"
 #include "io/files/mapped_file.h"
@@ -26,12 +28,21 @@ namespace gaussmap::detail {
 namespace {
 
 constexpr std::size_t kStart = 4096;  // bytes that tell the kind of a file
+constexpr std::string_view kRosbag2Metadata = "rosbag2_bagfile_information";
 
 BagPoses bagPosesOf(const OpenOptions& options) {
   if (!options.needs_poses) return BagPoses::None;
   const std::string& poses = options.files.recording.poses;
   if (poses.empty()) return BagPoses::Automatic;
   return poses == "tf" ? BagPoses::Tf : BagPoses::Topic;
+}
+
+/// Returns true for one of several files of a recording of rosbag2.
+bool isPartOfRecording(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::path folder = path.parent_path();
+  return std::filesystem::exists(folder / "metadata.yaml", error) && !std::filesystem::is_directory(path, error) &&
+         findRecordingFiles(folder).files.size() > 1;
 }
 
 std::shared_ptr<const ScanFile> openRecording(const std::filesystem::path& path, const OpenOptions& options) {
@@ -44,7 +55,17 @@ std::shared_ptr<const ScanFile> openRecording(const std::filesystem::path& path,
   bag.fixed_frame = recording.fixed_frame;
   bag.max_time_gap = options.max_time_gap;
   bag.log_times = recording.log_times;
-  return openBagScans(openMessageFile(path), path, bag);
+  bag.has_extrinsic = options.has_extrinsic;
+  bag.points_in_map = options.points_in_map;
+  const std::string folder = isPartOfRecording(path) ? path.parent_path().string() : "";
+  try {
+    return openBagScans(openMessageFile(path), path, bag);
+  } catch (const FileError& error) {
+    if (folder.empty()) throw;
+    const std::string text = error.what();
+    throw FileError(path, text.substr(std::min(text.size(), path.string().size() + 2)) +
+                              "; this is one file of the recording in " + folder + ": give the folder");
+  }
 }
 
 /// Opens a file whose columns or fields the user names.
@@ -58,8 +79,12 @@ std::shared_ptr<const ScanFile> openWithFields(const std::filesystem::path& path
 
 /// Only PCD files are read while they are compressed with gzip.
 std::shared_ptr<const ScanFile> openGzip(const std::filesystem::path& path) {
-  const std::string extension = scanExtension(path.stem());
-  if (extension.empty() || extension == ".pcd") return openPcd(path);
+  const std::string name = path.filename().string();
+  if (name.find(".tar.") != std::string::npos || path.extension() == ".tgz")
+    throw FileError(path, "is an archive (tar, gzip); expand it with tar xzf");
+  const std::string extension = scanExtension(path.stem()), inner = path.stem().extension().string();
+  const bool is_text = inner == ".txt" || inner == ".csv" || inner == ".asc";
+  if ((extension.empty() && !is_text) || extension == ".pcd") return openPcd(path);
   throw FileError(path, "is compressed with gzip; expand it with gunzip (only PCD files can stay compressed)");
 }
 
@@ -78,13 +103,23 @@ std::shared_ptr<const ScanFile> openByName(const std::filesystem::path& path, st
   if (isMapFile(start)) throw FileError(path, "is a map, not a file of scans; gaussmap merge combines maps");
   if (const std::string kind = kindOfStart(start); !kind.empty())
     throw FileError(path, "is " + kind + ", not a file of scans");
-  if (looksLikeText(start)) return openCloudText(path);
+  if (start.substr(0, kRosbag2Metadata.size()) == kRosbag2Metadata)
+    throw FileError(path, "describes a recording of rosbag2; give the folder with the recording instead");
+  const std::string lower = path.extension().string();
+  const bool is_named_text = lower == ".txt" || lower == ".csv" || lower == ".asc" || extension == ".xyz" ||
+                             extension == ".pts" || extension == ".ptx";
+  if (looksLikeText(start) || is_named_text || start[0] == '\xFF' || start[0] == '\xFE') return openCloudText(path);
   throw FileError(path,
                   "is of no kind that gaussmap reads (PCD, PLY, LAS, LAZ, E57, text, MCAP, bags of ROS); if it "
                   "holds raw numbers, name their fields: --fields \"x y z intensity\"");
 }
 
 }  // namespace
+
+OpenOptions openOptions(const FindScansOptions& options) {
+  return {options.files, options.poses.empty(), options.matching.max_time_gap, options.extrinsic.has_value(),
+          options.frame == ScanFrame::Map};
+}
 
 std::shared_ptr<const ScanFile> openScanFile(const std::filesystem::path& path, const OpenOptions& options) {
   std::error_code error;

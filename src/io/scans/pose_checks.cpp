@@ -105,7 +105,8 @@ void dropUnneededRotations(std::vector<ScanPose>& scans, std::vector<std::string
 
 PoseDiagnosis diagnosePoses(const std::vector<ScanPose>& scans) {
   for (const ScanPose& scan : scans)
-    if (const std::string fault = poseFault(scan.pose); !fault.empty()) throw FileError(scan.path, fault);
+    if (const std::string fault = poseFault(scan.pose); !fault.empty())
+      throw FileError(scan.path, (scan.name.empty() ? "" : scan.name + ": ") + fault);
   PoseDiagnosis diagnosis;
   warnOfIdenticalPoses(scans, diagnosis);
   warnOfFarPoses(scans, diagnosis);

@@ -10,25 +10,26 @@
 #include <vector>
 
 #include "gaussmap/core/pose.h"
-#include "gaussmap/io/pcd/pcd_reader.h"
+#include "io/formats/scan_file.h"
 
 namespace gaussmap::detail {
 
 /// What a file says about the poses of its scans.
 struct PosesInFile {
-  std::string source;   ///< ScanFile::poseSource()
-  std::string missing;  ///< ScanFile::missingPoses()
+  std::string source;    ///< ScanFile::poseSource()
+  MissingPoses missing;  ///< ScanFile::missingPoses()
 };
 
 /// Input of the pose checks for one scan; small enough to keep for all scans.
 struct ScanPose {
   std::filesystem::path path;
-  Pose pose;                      ///< as given, with a quaternion that is not normalised
-  std::uint64_t fingerprint = 0;  ///< differs between different clouds
-  double position_step = 0.0;     ///< PcdHeader::viewpoint_step; 0 if the pose comes from elsewhere
-  bool has_pose = true;           ///< false: the file gives no pose, and `pose` is the identity
-  bool in_map_frame = false;      ///< true: no pose is needed
-  std::string name = "";          ///< of the scan in a file with several scans
+  Pose pose;                                    ///< as given, with a quaternion that is not normalised
+  std::uint64_t fingerprint = 0;                ///< differs between different clouds
+  double position_step = 0.0;                   ///< PcdHeader::viewpoint_step; 0 if the pose comes from elsewhere
+  std::optional<Pose> mounting = std::nullopt;  ///< FileScanInfo::mounting
+  bool has_pose = true;                         ///< false: the file gives no pose, and `pose` is the identity
+  bool in_map_frame = false;                    ///< true: no pose is needed
+  std::string name = "";                        ///< of the scan in a file with several scans
   std::optional<std::chrono::nanoseconds> time = std::nullopt;  ///< from the file
   std::shared_ptr<const PosesInFile> file_poses = nullptr;      ///< nullptr: as if both texts were empty
 

@@ -19,8 +19,8 @@ struct FloatRecordsOptions {
 /// Opens a file of raw little-endian records without a header, such as the .bin files of KITTI and nuScenes.
 ///
 /// Without options.fields, the records are 4 floats (x y z intensity, KITTI) or 5 floats (x y z intensity ring,
-/// nuScenes). The content decides: finite coordinates below 10 km, an intensity from 0 to 1 or from 0 to 255, and a
-/// whole ring from 0 to 127. If both fit, the ending .pcd.bin of nuScenes decides.
+/// nuScenes). The content decides: finite coordinates below 10 km, an intensity from 0 to 1, or whole from 0 to 255,
+/// and a whole ring from 0 to 127. If both fit, the ending .pcd.bin of nuScenes decides.
 ///
 /// Throws FileError if neither or both fit, if the size is not a multiple of the record, or if the first bytes are
 /// those of another kind of file. Throws std::invalid_argument if options.fields is not valid.

@@ -262,6 +262,8 @@ NamedColumns nameColumns(const std::vector<std::string_view>& names) {
       named.fault = "two columns are named " + quote(names[i]);
     if (split[i].alias < split[winner->second].alias) winner->second = i;
   }
+  const auto has = [&](std::string_view name) { return std::find(names.begin(), names.end(), name) != names.end(); };
+  if (has("cov_xx") && has("cell_side")) named.fault = "the rows are the Gaussians of a map, not the points of a scan";
   // A single r is not a colour. It can be a range or a ring.
   const bool has_colours = std::all_of(std::begin(kColourChannels), std::end(kColourChannels),
                                        [&](const char* channel) { return winners.count(channel) > 0; });

@@ -105,6 +105,8 @@ class PtxParser {
     scan.pose = poseOf(matrix);
     warnOfOtherAxes(position_and_axes, matrix);
     addPoints(first_line, scanner_columns, scan);
+    if (ptx_.scans.size() == kMostScans)
+      throw FileError(ptx_.path, "more than " + std::to_string(kMostScans) + " scans: is this a PTX file?");
     ptx_.scans.push_back(scan);
   }
 

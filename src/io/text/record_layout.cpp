@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 #include "gaussmap/core/error.h"
@@ -34,6 +35,32 @@ struct KnownRecord {
 constexpr KnownRecord kKitti = {"x y z intensity"};
 constexpr KnownRecord kNuScenes = {"x y z intensity ring"};
 
+/// Returns true if x or y spreads more than twice as far in some of `period` interleaved groups of records as in
+/// others. That happens if the true records are longer or shorter than these.
+bool isMixed(const RecordLayout& layout, std::string_view bytes, std::size_t period) {
+  constexpr std::size_t kEnough = 100, kMost = 10000;  // records
+  const std::size_t count = std::min(bytes.size() / layout.size, kMost);
+  if (count < kEnough) return false;
+  std::vector<double> values(count);
+  for (const std::size_t field : {0, 1}) {
+    readField(layout, field, bytes, 0, count, values.data());
+    double least = std::numeric_limits<double>::infinity(), most = 0.0;
+    for (std::size_t group = 0; group < period; ++group) {
+      double sum = 0.0, squares = 0.0, size = 0.0;
+      for (std::size_t i = group; i < count; i += period) {
+        sum += values[i];
+        squares += values[i] * values[i];
+        ++size;
+      }
+      const double variance = std::max(0.0, squares / size - (sum / size) * (sum / size));
+      least = std::min(least, variance);
+      most = std::max(most, variance);
+    }
+    if (most > 4.0 * least) return true;
+  }
+  return false;
+}
+
 /// Returns why the bytes are not such records, or an empty text.
 std::string misfit(const KnownRecord& known, std::string_view bytes) {
   const RecordLayout layout(parseFields(known.fields, true));
@@ -47,7 +74,8 @@ std::string misfit(const KnownRecord& known, std::string_view bytes) {
   // Nearly all floats whose bytes are not floats are very large, very small, or not finite.
   constexpr double kLargest = 1e4;
   constexpr double kSmallest = 1e-20;
-  bool all_zero = true;
+  bool all_zero = true, are_shares = true, are_whole = true;
+  std::size_t on_axis = 0;  // points with y = z = 0, but not x
   for (std::size_t i = 0; i < samples[0].values.size(); ++i) {
     for (std::size_t field = 0; field < samples.size(); ++field) {
       const double value = samples[field].values[i];
@@ -55,13 +83,23 @@ std::string misfit(const KnownRecord& known, std::string_view bytes) {
       if (!(size < kLargest) || (size < kSmallest && size > 0.0)) return complain(field, value);
       all_zero = all_zero && value == 0.0;
     }
+    on_axis += samples[0].values[i] != 0.0 && samples[1].values[i] == 0.0 && samples[2].values[i] == 0.0;
     const double intensity = samples[3].values[i];
     if (intensity < 0.0 || intensity > 255.0) return complain(3, intensity);
+    are_shares = are_shares && intensity <= 1.0;
+    are_whole = are_whole && intensity == std::floor(intensity);
+    if (!are_shares && !are_whole) return complain(3, intensity);
     if (samples.size() < 5) continue;
     const double ring = samples[4].values[i];
     if (ring < 0.0 || ring > 127.0 || ring != std::floor(ring)) return complain(4, ring);
   }
-  return all_zero ? "all numbers would be 0" : "";
+  if (all_zero) return "all numbers would be 0";
+  // Every other record of points that take 32 bytes, as in PCL.
+  if (4 * on_axis > samples[0].values.size()) return "y and z of many points would be 0";
+  for (const std::size_t period : {2, 3})
+    if (isMixed(layout, bytes, period))
+      return "every " + std::string(period == 2 ? "second" : "third") + " point would be of another kind";
+  return "";
 }
 
 bool endsWith(std::string_view text, std::string_view end) {

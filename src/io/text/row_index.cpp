@@ -47,6 +47,8 @@ void addCountedRows(const RowParser& parser, TextPlace place, const char* end, R
                                   " points of line " + std::to_string(line) +
                                   ": the file is cut off, or the number is wrong");
     last_line = line;
+    if (index.blocks.size() > kMostScans)
+      parser.fail(line, "more than " + std::to_string(kMostScans) + " scans: is this a PTS file?");
     // Empty blocks would need more memory than text.
     if (count == 0 && (index.blocks.size() > 1 || parser.findRow(place)))
       parser.fail(line, "a scan with 0 points: delete this line");

@@ -9,6 +9,9 @@
 
 namespace gaussmap::detail {
 
+/// Largest number of scans in a text. It limits the memory for files with very short scans.
+inline constexpr std::size_t kMostScans = 65536;
+
 /// A run of rows: one scan of a text.
 struct RowBlock {
   std::size_t rows = 0;

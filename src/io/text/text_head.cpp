@@ -27,6 +27,18 @@ std::string_view decimalComma(const std::vector<std::string_view>& words, char s
   return "";
 }
 
+/// Returns true if a header has columns of latitude and longitude.
+bool namesDegrees(const std::vector<std::string_view>& words) {
+  bool has_latitude = false, has_longitude = false;
+  for (const std::string_view word : words) {
+    std::string lower(word);
+    for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    has_latitude = has_latitude || lower == "lat" || lower == "latitude";
+    has_longitude = has_longitude || lower == "lon" || lower == "lng" || lower == "long" || lower == "longitude";
+  }
+  return has_latitude && has_longitude;
+}
+
 class HeadReader {
  public:
   HeadReader(const std::filesystem::path& path, std::string_view text, const std::vector<PointField>& fields)
@@ -88,6 +100,8 @@ class HeadReader {
     }
     if (const std::string_view word = decimalComma(words, separator); !word.empty())
       rows_.fail(place_.line, quote(word) + " has a decimal comma: write decimals with a point (1.5, not 1,5)");
+    if (head_.names.empty() && namesDegrees(words))
+      rows_.fail(place_.line, "names degrees, but a map needs metres: convert the coordinates to a projected system");
     if (head_.names.empty() || words.size() < 2)
       rows_.fail(place_.line, notANumber(*text) + ", and the line does not name columns x, y and z" +
                                   (fields_.empty() ? "; name the columns with --fields \"x y z intensity\"" : ""));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <functional>
 #include <iterator>
 #include <utility>
 
@@ -72,19 +73,21 @@ void requireNoOtherOrder(const std::filesystem::path& path, const std::vector<Co
   constexpr std::size_t kEnough = 8;
   const std::vector<double>& first = samples[0].values;
   if (samples.size() < 4 || first.size() < kEnough) return;
-  // The samples are runs of rows that follow each other. The first run has at least kEnough rows.
-  bool counts = isWhole(samples[0]) && std::is_sorted(first.begin(), first.end());
-  for (std::size_t i = 1; i < kEnough; ++i) counts = counts && first[i] - first[i - 1] == 1.0;
-  if (counts)
-    throw FileError(path,
-                    "column 1 counts the rows, so it is not x; skip it with --fields \"- x y z\", or give the "
-                    "names \"x y z\" if it is x");
   constexpr double kClock = 1e8;  // seconds since 1970 are larger, and coordinates of maps are smaller
   const bool is_clock = std::is_sorted(first.begin(), first.end()) && extentOf(samples[0]).low > kClock &&
                         extentOf(samples[1]).high < kClock;
   if (is_clock)
     throw FileError(path, "column 1 holds times, for example " + shortNumber(first.front()) + ", so it is not x; " +
                               "use --fields \"time x y z\" with a name for each column");
+  // The samples are runs of rows that follow each other. The first run has at least kEnough rows.
+  const bool counts = std::adjacent_find(first.begin(), first.end(), std::greater_equal<>()) == first.end();
+  const bool is_whole_only = isWhole(samples[0]) && !isWhole(samples[1]) && !isWhole(samples[2]);
+  if (counts || is_whole_only)
+    throw FileError(path, "column 1 " +
+                              std::string(counts ? "grows from row to row like a number or a time"
+                                                 : "holds whole numbers like an index or a class") +
+                              ", so it may not be x; skip it with --fields \"- x y z\", or give the names "
+                              "\"x y z\" if it is x");
 }
 
 /// Names the columns of a text without a header.
@@ -105,6 +108,9 @@ std::vector<PointField> guessNames(const std::filesystem::path& path, const Text
   name(0, {"x", "y", "z"});
   bool clear = columns == 3;
   if (columns == 4) {
+    if (!head.counted && extentOf(samples[3]).low < 0.0 && !isWhole(samples[3]))
+      fail("4 columns without names, and the last one is negative in places, so it is no intensity; " +
+           std::string(kUseFields));
     name(3, {"intensity"});
     clear = true;
   } else if (columns == 6 && areColours(samples, 3)) {
@@ -117,7 +123,7 @@ std::vector<PointField> guessNames(const std::filesystem::path& path, const Text
     name(3, colours);
     clear = true;
     warnings.push_back("columns 4 to 6 have no names; they lie between 0 and 1 and are taken as red, green and blue");
-  } else if (columns == 7 && areColours(samples, 4)) {
+  } else if (columns == 7 && areColours(samples, 4) && (head.counted || !areColours(samples, 3))) {
     name(3, {"intensity"});
     name(4, colours);
     clear = true;
@@ -135,11 +141,7 @@ std::vector<PointField> guessNames(const std::filesystem::path& path, const Text
     name(7, normals);
     clear = true;
   }
-  if (clear) return fields;
-  // A row of a trajectory has 8 columns (time, position, quaternion) or 12 (matrix).
-  if (columns > 7) fail(std::to_string(columns) + " columns without names; " + kUseFields + " (\"-\" skips a column)");
-  warnings.push_back("the first three columns are taken as x y z; columns 4 to " + std::to_string(columns) +
-                     " have no names and are not used; " + kUseFields);
+  if (!clear) fail(std::to_string(columns) + " columns without names; " + kUseFields + " (\"-\" skips a column)");
   return fields;
 }
 

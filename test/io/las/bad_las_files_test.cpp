@@ -68,6 +68,8 @@ TEST_F(BadLasFiles, HeadersThatMakeNoSenseAreRefused) {
   expectChangeRefused(104, std::uint8_t{1}, {"byte 105", "20 bytes per point", "needs 28"});
   expectChangeRefused(105, std::uint16_t{0}, {"byte 105", "0 bytes per point"});
   expectChangeRefused(139, 0.0, {"byte 139", "scale of y is 0"});
+  expectChangeRefused(139, -0.001, {"byte 139", "must be a positive number"});
+  expectChangeRefused(131, 1e-300, {"byte 131", "scale of x is 1e-300"});
   expectChangeRefused(147, std::nan(""), {"byte 147", "scale of z"});
   expectChangeRefused(155, std::numeric_limits<double>::infinity(), {"byte 155", "offset of x is inf"});
 }

@@ -60,13 +60,13 @@ TEST_F(LasFiles, TheFileIsOneScanInTheMapFrame) {
 
 TEST_F(LasFiles, CoordinatesAreScaledInDouble) {
   LasBytes bytes;
-  bytes.scale = {1e-7, 0.001, -0.5};
+  bytes.scale = {1e-7, 0.001, 0.5};
   bytes.offset = {636001.25, 5e6, 0.0};
   bytes.points = {{2147483647, -2147483647 - 1, 7}, {0, 1, -1}};
   const auto axes = test::coordinatesOf(*open(bytes)->open(0));
   EXPECT_EQ(axes[0], (std::vector<double>{2147483647 * 1e-7 + 636001.25, 636001.25}));
   EXPECT_EQ(axes[1], (std::vector<double>{-2147483648.0 * 0.001 + 5e6, 1 * 0.001 + 5e6}));
-  EXPECT_EQ(axes[2], (std::vector<double>{-3.5, 0.5}));
+  EXPECT_EQ(axes[2], (std::vector<double>{3.5, -0.5}));
 }
 
 TEST_F(LasFiles, AReaderOutlivesItsFileAndReadsAnyBlock) {

@@ -58,7 +58,9 @@ TEST_F(PlyClouds, FilesOfOtherWritersHaveTheValuesOfAnotherReader) {
     if (entry.path().extension() != ".ply") continue;
     const auto file = openPlyCloud(entry.path());
     test::expectValuesOf(std::filesystem::path(entry.path()).replace_extension(".txt"), *file->open(0));
-    EXPECT_TRUE(file->warnings().empty()) << entry.path();
+    for (const std::string& warning : file->warnings())
+      EXPECT_TRUE(warning.find("the file is a mesh") == 0 || warning.find("the pose in the element camera") == 0)
+          << entry.path() << warning;
     ++files;
   }
   EXPECT_EQ(files, 8);
@@ -139,7 +141,8 @@ TEST_F(PlyClouds, ElementsBeforeAndBehindAreSkipped) {
     const auto reader = read(bytes);
     EXPECT_EQ(test::coordinatesOf(*reader), (std::vector<Column>{{1, 4}, {2, 5}, {3, 6}}));
     EXPECT_TRUE(reader->valueNames().empty());
-    EXPECT_EQ(warningsOf(bytes), "");
+    EXPECT_EQ(warningsOf(bytes),
+              "the file is a mesh with 2 faces: its vertices are used as points, and the faces are ignored\n");
   }
 }
 

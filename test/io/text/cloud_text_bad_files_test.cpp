@@ -97,12 +97,20 @@ TEST_F(BadCloudTexts, HeadersThatDoNotFitAreRefused) {
 }
 
 TEST_F(BadCloudTexts, ColumnsThatAreCertainlyNotXAreRefused) {
-  std::string counted, timed;
+  std::string counted, timed, relative, classes;
   for (int i = 0; i < 20; ++i) {
     counted += std::to_string(i) + " 1.5 2.5 3.5\n";
     timed += "17000000" + std::to_string(10 + i) + ".5 1.5 2.5 3.5\n";
+    relative += std::to_string(0.1 * i * i) + " 1.5 2.5 3.5\n";
+    classes += std::to_string(i % 3) + " " + std::to_string(0.5 + i % 4) + " " + std::to_string(1.5 - i % 5) + " 3.5\n";
   }
-  expectRefused(counted, {"column 1 counts the rows", "--fields \"- x y z\""});
+  for (const char* const unclear : {"1 2 3 4 5\n", "1 2 3 5.5 -6 7\n", "1 2 3 5 6 7 1000\n", "1 2 3 4 5 6 7\n"})
+    expectRefused(unclear, {"columns without names; name the columns, for example with --fields"});
+  expectRefused("lat,lon,alt\n52.1,13.2,30\n", {"names degrees, but a map needs metres"});
+  expectRefused(relative, {"column 1 grows from row to row"});
+  expectRefused(classes, {"column 1 holds whole numbers like an index or a class"});
+  expectRefused("1.5 2.5 3.5 0.5\n2.5 2.5 3.5 -0.25\n", {"the last one is negative in places"});
+  expectRefused(counted, {"column 1 grows from row to row", "--fields \"- x y z\""});
   expectRefused(timed, {"column 1 holds times", "--fields \"time x y z\""});
   expectRefused("1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n", {"8 columns without names", "--fields"});
 }

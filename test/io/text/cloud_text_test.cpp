@@ -147,9 +147,7 @@ TEST_F(CloudTexts, ColumnsWithoutNamesAreFoundFromTheirValues) {
   expectRows("1 2 3 -2048 1 2 3\n", "intensity rgb", "1 2 3 -2048 66051\n");
   expectRows("1 2 3 1 2 3 0 0 1\n", "rgb normal_x normal_y normal_z", "1 2 3 66051 0 0 1\n");
   expectWarning("1 2 3 0.5 0.1 0.2\n", "rgb", "columns 4 to 6");
-  expectWarning("1 2 3 4 5\n", "", "columns 4 to 5 have no names and are not used; name the columns");
-  expectWarning("1 2 3 5.5 -6 7\n", "", "columns 4 to 6");
-  expectWarning("1 2 3 5 6 7 1000\n", "", "--fields");
+  expectRows("1 2 3 -2048\n2 2 3 2047\n", "intensity", "1 2 3 -2048\n2 2 3 2047\n");  // of Leica
 }
 
 TEST_F(CloudTexts, TheUserCanNameTheColumns) {

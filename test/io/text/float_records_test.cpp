@@ -87,7 +87,15 @@ TEST_F(FloatRecordFiles, WhatFitsBothOrNeitherIsRefused) {
   expectRefused(bytesOfFloats({1, 2e4f, 3, 0.5f}), {"y would be 2e+04"});
   expectRefused(bytesOfFloats({1, std::numeric_limits<float>::quiet_NaN(), 3, 0.5f}), {"y would be nan"});
   expectRefused(bytesOfFloats({1, 1e-40f, 3, 0.5f}), {"y would be 1e-40"});
+  std::vector<float> longer;  // x y z 1, then four values
+  for (int i = 0; i < 200; ++i)
+    for (const float value : {float(i % 17), float(i % 13), 1.5f, 1.0f, 0.5f, float(i % 3), float(i % 5), 0.0f})
+      longer.push_back(value);
+  expectRefused(bytesOfFloats(longer), {"every second point would be of another kind"});
   expectRefused("\x01\x02\x03", {"3 bytes"});
+  expectRefused(bytesOfFloats({1, 2, 3, 1.5f, 4, 5, 6, 2.5f}), {"intensity would be 1.5"});  // 3 floats per record
+  expectRefused(bytesOfFloats({1, 2, 3, 1, 0.5f, 0, 0, 0, 4, 5, 6, 1, 0.25f, 0, 0, 0}),
+                {"y and z of many points would be 0"});  // 8 floats per record, as in PCL
   Random random(7);
   std::string noise(8000, '\0');
   for (char& byte : noise) byte = static_cast<char>(random.below(256));
