@@ -203,7 +203,8 @@ void checkAngles(const LaserMessage& laser, const MessageOrigin& origin) {
     origin.fail("angle_min or angle_increment is not finite");
 }
 
-MessageScanSize sizeOf(CloudMessage cloud, const MessageOrigin& origin) {
+/// Returns the size of a cloud, whose data are not needed.
+MessageScanSize sizeOfCloud(CloudMessage cloud, const MessageOrigin& origin) {
   const CloudLayout layout = layoutOf(cloud, origin);
   // Rows can have padding, but a single row needs none.
   const bool has_unused = cloud.height == 1 && layout.row_step >= (layout.width + 1) * layout.point_step;
@@ -232,13 +233,14 @@ MessageScanSize scanSize(const std::string& type, std::string_view message, Mess
     checkChannels(cloud, origin);
     return {std::move(cloud.header), cloud.coordinates.size() / 3, false, true};
   }
-  return sizeOf(decodeCloud(message, encoding, origin), origin);
+  return sizeOfCloud(decodeCloud(message, encoding, origin), origin);
 }
 
 std::optional<MessageScanSize> scanSizeOfStart(const MessageStart& start, MessageEncoding encoding,
                                                const MessageOrigin& origin) {
   try {
-    return sizeOf(decodeCloudStart({start.bytes.data(), start.bytes.size()}, start.size, encoding, origin), origin);
+    return sizeOfCloud(decodeCloudStart({start.bytes.data(), start.bytes.size()}, start.size, encoding, origin),
+                       origin);
   } catch (const FileError&) {
     return std::nullopt;
   }
