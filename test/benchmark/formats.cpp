@@ -176,9 +176,9 @@ void print(const std::vector<Way>& ways, int runs) {
       "%zu points in %zu scans. Medians of %d interleaved runs after a first one, with opening, one thread. Rates and\n"
       "ratios are of processor time: how many times faster than PCL. Memory: peak of a process of its own.\n",
       ways.at(2).sums.points, ways.at(2).scans.size(), runs);
-  std::printf("%-42s %8s %9s %8s %8s %9s %8s %8s %9s\n", "", "", "processor", "wall", "", "", "PCL", "PCL", "");
+  std::printf("%-42s %8s %9s %8s %8s %9s %8s %8s %9s\n", "", "", "processor", "wall", "", "", "PCL", "PCL", "memory");
   std::printf("%-42s %8s %9s %8s %8s %9s %8s %8s %9s\n", "kind", "MB", "ms", "ms", "MB/s", "Mpoint/s", "binary",
-              "compr.", "memory MB");
+              "compr.", "MB");
   const double binary = median(ways[0].processor), compressed = median(ways[1].processor);
   for (const Way& way : ways) {
     const double seconds = median(way.processor);
