@@ -13,6 +13,7 @@ int main(int argc, char** argv) try {
 #ifdef GAUSSMAP_BENCHMARK_PCL
   addTable(app);
   addGrowth(app);
+  addFormats(app);
   addRegistration(app);
   addNormals(app);
   addFilters(app);

@@ -15,6 +15,7 @@ void addRefinementSpeed(CLI::App& app);
 void addMovingPoints(CLI::App& app);
 void addFinishedSize(CLI::App& app);
 void addSegments(CLI::App& app);
+void addFormats(CLI::App& app);       // with PCL
 void addRegistration(CLI::App& app);  // with PCL
 void addNormals(CLI::App& app);       // with PCL
 void addFilters(CLI::App& app);       // with PCL

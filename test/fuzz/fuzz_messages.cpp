@@ -34,6 +34,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (isPoseType(type)) decodePoses(type, message, encoding, origin);
     if (!isScanType(type)) return;
     const MessageScanSize about = scanSize(type, message, encoding, origin);
+    if (isCloudType(type)) {
+      const MessageStart start{{bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 2)},
+                               bytes.size()};
+      const auto same = scanSizeOfStart(start, encoding, origin);
+      if (same && same->points != about.points) std::abort();
+    }
     const auto reader = readScan(type, bytes, encoding, origin);
     if (reader->size() != about.points) std::abort();
     PointBlock<3> block;

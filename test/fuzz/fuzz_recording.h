@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdlib>
+#include <vector>
 
 #include "fuzz_file.h"
 #include "io/formats/message_file.h"
@@ -17,7 +19,12 @@ inline void readRecording(const std::filesystem::path& path) {
     const auto& messages = file->messages();
     for (std::size_t i = 0; i < std::min<std::size_t>(messages.size(), 50); ++i) {
       if (messages[i].topic >= file->topics().size()) std::abort();
-      refusesOrReads([&] { file->read(messages[i]); });
+      refusesOrReads([&] {
+        const detail::MessageStart start = file->readStart(messages[i], 20);
+        const std::vector<char> bytes = file->read(messages[i]);
+        if (start.size != bytes.size() || !std::equal(start.bytes.begin(), start.bytes.end(), bytes.begin()))
+          std::abort();
+      });
     }
   });
 }

@@ -32,9 +32,8 @@ struct ChunkBytes {
   std::shared_ptr<const char[]> owner;
 };
 
-/// A mapped file and its chunks, which are expanded when they are needed. The most recently used chunks are kept,
-/// up to 64 MiB, but at least one. If dropped chunks are soon needed again, the limit grows, up to 512 MiB. bytes() is
-/// thread-safe.
+/// A mapped file and its chunks, which are expanded when they are needed. The most recently used chunks are kept, up to
+/// 16 MiB, but at least one; up to 512 MiB if messages of many chunks are interleaved in time. bytes() is thread-safe.
 class ChunkStore {
  public:
   /// Maps a file. `shown` is its path in messages.
@@ -52,6 +51,15 @@ class ChunkStore {
   /// Returns the expanded bytes of a chunk, or those of the whole file if `number` is 0. Throws FileError if they are
   /// damaged.
   ChunkBytes bytes(std::size_t number) const;
+  /// Returns the first bytes of a chunk: at least `least`, or all if it has fewer. Does not verify the CRC. If few
+  /// bytes are needed, this function is much faster than bytes(). Throws FileError if they are damaged.
+  ChunkBytes start(std::size_t number, std::uint64_t least) const;
+  /// Returns the number of expanded bytes of a chunk, or the size of the file if `number` is 0.
+  std::uint64_t size(std::size_t number) const { return number == 0 ? file().size() : chunk(number).size; }
+
+  /// Says that a part of the file was read, and is hardly needed again. From time to time, the memory of such parts is
+  /// given back to the operating system. Views of other memory are ignored.
+  void finishedWith(std::string_view part) const;
 
   /// Throws FileError with a place: byte `offset` of a chunk, or of the file if `number` is 0.
   [[noreturn]] void fail(std::size_t number, std::uint64_t offset, const std::string& what) const;
@@ -63,11 +71,14 @@ class ChunkStore {
     std::mutex filling;
     std::shared_ptr<const char[]> bytes;
     bool checked = false;
+    std::shared_ptr<const char[]> start;  // only the first bytes
+    std::size_t start_size = 0;
   };
   using Kept = std::list<std::pair<std::size_t, std::shared_ptr<Slot>>>;
 
   std::shared_ptr<Slot> slotOf(std::size_t number) const;
   std::shared_ptr<const char[]> expanded(const Chunk& chunk) const;
+  bool expandStart(const Chunk& chunk, std::uint64_t least, Slot& slot) const;
   void check(const Chunk& chunk, std::string_view bytes) const;
 
   std::filesystem::path shown_;
@@ -78,9 +89,13 @@ class ChunkStore {
   mutable Kept kept_;         // the most recently used chunk comes first
   mutable std::unordered_map<std::size_t, Kept::iterator> places_;
   mutable std::uint64_t kept_bytes_ = 0;
-  mutable std::uint64_t keep_bytes_ = std::uint64_t{64} << 20;
+  mutable std::uint64_t keep_bytes_ = std::uint64_t{16} << 20;
   mutable std::unordered_map<std::size_t, std::uint64_t> dropped_;  // value of drops_ when a chunk was dropped
   mutable std::uint64_t drops_ = 0;
+  mutable std::uint64_t returns_ = 0;  // of chunks that had just been dropped
+  mutable std::mutex finished_mutex_;
+  mutable std::string_view finished_;  // from the first to the last part that was read
+  mutable std::size_t finished_bytes_ = 0;
 };
 
 }  // namespace gaussmap::detail

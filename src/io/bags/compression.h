@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -19,9 +20,17 @@ std::string nameOf(Compression compression);
 std::uint64_t maxExpanded(std::uint64_t packed);
 
 /// Expands bytes to exactly `size` bytes at `target`. `compression` must not be None. Returns an empty string, or what
-/// is wrong with the bytes.
-std::string expand(Compression compression, std::string_view packed, char* target, std::size_t size);
+/// is wrong with the bytes. `room_behind` is the number of bytes behind the target that may be changed: with
+/// roomBehind(), some libraries need no copy of their own.
+std::string expand(Compression compression, std::string_view packed, char* target, std::size_t size,
+                   std::size_t room_behind = 0);
+std::size_t roomBehind(Compression compression);
 
+/// Expands only the first `size` bytes. Returns false if that is not possible: the bytes can be damaged, or written in
+/// a way that needs much memory for this.
+bool expandFirst(Compression compression, std::string_view packed, char* target, std::size_t size);
+
+inline constexpr std::size_t kZstdMagicBytes = 4;
 /// Returns true if the bytes start like a zstd frame.
 bool isZstd(std::string_view bytes);
 

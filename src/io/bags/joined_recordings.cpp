@@ -38,12 +38,23 @@ class JoinedRecordings : public MessageFile {
   std::vector<std::string> warnings() const override { return warnings_; }
 
   std::vector<char> read(const MessagePlace& message) const override {
-    const auto next = std::upper_bound(begins_.begin(), begins_.end(), message.place);
-    const auto file = static_cast<std::size_t>(next - begins_.begin() - 1);
-    return files_[file]->read(files_[file]->messages().at(static_cast<std::size_t>(message.place - begins_[file])));
+    const std::size_t file = fileOf(message);
+    return files_[file]->read(placeIn(file, message));
+  }
+  MessageStart readStart(const MessagePlace& message, std::size_t most) const override {
+    const std::size_t file = fileOf(message);
+    return files_[file]->readStart(placeIn(file, message), most);
   }
 
  private:
+  std::size_t fileOf(const MessagePlace& message) const {
+    const auto next = std::upper_bound(begins_.begin(), begins_.end(), message.place);
+    return static_cast<std::size_t>(next - begins_.begin() - 1);
+  }
+  const MessagePlace& placeIn(std::size_t file, const MessagePlace& message) const {
+    return files_[file]->messages().at(static_cast<std::size_t>(message.place - begins_[file]));
+  }
+
   void addTopics(const MessageFile& file, std::uint64_t begin) {
     std::vector<std::size_t> numbers;
     for (const MessageTopic& topic : file.topics()) {

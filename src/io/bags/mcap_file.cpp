@@ -3,6 +3,7 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <set>
 #include <string>
@@ -39,6 +40,7 @@ class McapFile : public MessageFile {
   const std::vector<MessagePlace>& messages() const override { return index_.messages(); }
   std::vector<std::string> warnings() const override { return index_.warnings(); }
   std::vector<char> read(const MessagePlace& message) const override;
+  MessageStart readStart(const MessagePlace& message, std::size_t most) const override;
 
  private:
   using Place = std::uint64_t;
@@ -226,7 +228,27 @@ std::vector<char> McapFile::read(const MessagePlace& message) const {
     if (!error.empty()) store_.fail(chunk, offset, "the compressed message " + error);
     return expanded;
   }
-  return {found.data.begin(), found.data.end()};
+  std::vector<char> data(found.data.begin(), found.data.end());
+  store_.finishedWith(found.data);
+  return data;
+}
+
+MessageStart McapFile::readStart(const MessagePlace& message, std::size_t most) const {
+  constexpr std::size_t kHeads = kMcapRecordHead + kMcapMessageHead;
+  const std::size_t chunk = MessageIndex::chunkOf(message);
+  const std::uint64_t offset = MessageIndex::offsetOf(message);
+  const ChunkBytes bytes = store_.start(chunk, offset + kHeads + std::max(most, kZstdMagicBytes));
+  McapRecord record;
+  McapMessage found;
+  readMcapRecord(bytes.bytes, offset, record);  // false if the record is longer than the start
+  const bool is_message = record.kind == mcap::Message && readMcapMessage(record.content, found) &&
+                          record.size <= store_.size(chunk) - offset - kMcapRecordHead;
+  if (!is_message || isZstd(found.data)) return MessageFile::readStart(message, most);
+  index_.requireSame(message, found.channel, found.log_time);
+  const std::string_view data = found.data.substr(0, most);
+  MessageStart start{{data.begin(), data.end()}, static_cast<std::size_t>(record.size) - kMcapMessageHead};
+  store_.finishedWith(data);
+  return start;
 }
 
 }  // namespace

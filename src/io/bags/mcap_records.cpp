@@ -20,10 +20,11 @@ bool readMcapRecord(std::string_view bytes, std::uint64_t place, McapRecord& rec
   if (place > bytes.size()) return false;
   ByteCursor cursor(bytes.substr(static_cast<std::size_t>(place)));
   record.kind = cursor.take<std::uint8_t>();
-  const auto size = cursor.take<std::uint64_t>();
+  record.size = cursor.take<std::uint64_t>();
   if (!cursor.ok()) return false;
-  record.content = cursor.rest().substr(0, static_cast<std::size_t>(std::min<std::uint64_t>(size, bytes.size())));
-  return record.content.size() == size;
+  record.content =
+      cursor.rest().substr(0, static_cast<std::size_t>(std::min<std::uint64_t>(record.size, bytes.size())));
+  return record.content.size() == record.size;
 }
 
 bool readMcapMessage(std::string_view content, McapMessage& message) {

@@ -15,6 +15,7 @@ namespace gaussmap::detail {
 
 inline constexpr std::string_view kMcapMagic("\x89MCAP0\r\n", 8);
 inline constexpr std::size_t kMcapRecordHead = 9;
+inline constexpr std::size_t kMcapMessageHead = 22;  ///< bytes of the content of a Message record before the data
 
 namespace mcap {
 enum Kind : std::uint8_t {
@@ -33,6 +34,7 @@ enum Kind : std::uint8_t {
 struct McapRecord {
   std::uint8_t kind = 0;
   std::string_view content;
+  std::uint64_t size = 0;  ///< of the content, as announced
 };
 
 /// Reads the record at `place`. Returns false if it does not fit into the bytes; `record` then holds the part that

@@ -79,7 +79,9 @@ void MessageIndex::sortByPlace() {
 void MessageIndex::readChunk(std::size_t chunk, const ReadChunk& read_chunk) {
   read_[chunk] = true;
   try {
-    read_chunk(chunk, store_->bytes(chunk).bytes);
+    const ChunkBytes bytes = store_->bytes(chunk);
+    read_chunk(chunk, bytes.bytes);
+    store_->finishedWith(bytes.bytes);
   } catch (const FileError& error) {
     const std::string what = error.what(), path = store_->path().string() + ": ";
     if (damaged_chunks_++ == 0) first_damage_ = what.rfind(path, 0) == 0 ? what.substr(path.size()) : what;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/bags/ros1_bag.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <set>
 #include <string>
@@ -39,6 +40,7 @@ class Ros1Bag : public MessageFile {
   const std::vector<MessagePlace>& messages() const override { return index_.messages(); }
   std::vector<std::string> warnings() const override { return index_.warnings(); }
   std::vector<char> read(const MessagePlace& message) const override;
+  MessageStart readStart(const MessagePlace& message, std::size_t most) const override;
 
  private:
   [[noreturn]] void fail(std::size_t place, const std::string& what) const { store_.fail(0, place, what); }
@@ -198,7 +200,28 @@ std::vector<char> Ros1Bag::read(const MessagePlace& message) const {
       !readRos1Message(record, found))
     store_.fail(chunk, offset, "expected a message (op 2): the bag or its index is damaged");
   index_.requireSame(message, found.connection, found.time);
-  return {record.data.begin(), record.data.end()};
+  std::vector<char> data(record.data.begin(), record.data.end());
+  store_.finishedWith(record.data);
+  return data;
+}
+
+MessageStart Ros1Bag::readStart(const MessagePlace& message, std::size_t most) const {
+  constexpr std::size_t kUsualHeads = 64;  // lengths and header of a message
+  const std::size_t chunk = MessageIndex::chunkOf(message);
+  const std::uint64_t offset = MessageIndex::offsetOf(message);
+  const ChunkBytes bytes = store_.start(chunk, offset + kUsualHeads + most);
+  Ros1Record record;
+  Ros1Message found;
+  readRos1Record(bytes.bytes, offset, record);  // false if the record is longer than the start
+  const bool is_message = record.kind == ros1::MessageData && readRos1Message(record, found) && record.bytes > 0 &&
+                          record.size - record.data.size() <= store_.size(chunk) - offset - record.bytes;
+  if (!is_message || record.data.size() < std::min<std::uint64_t>(record.size, most))
+    return MessageFile::readStart(message, most);
+  index_.requireSame(message, found.connection, found.time);
+  const std::string_view data = record.data.substr(0, most);
+  MessageStart start{{data.begin(), data.end()}, static_cast<std::size_t>(record.size)};
+  store_.finishedWith(data);
+  return start;
 }
 
 }  // namespace

@@ -14,9 +14,12 @@ bool readRos1Record(std::string_view bytes, std::uint64_t place, Ros1Record& rec
   record.header = cursor.takeText();
   if (!cursor.ok()) return false;
   findRos1Number(record.header, "op", record.kind);
-  record.data = cursor.takeText();
-  record.bytes = bytes.size() - static_cast<std::size_t>(place) - cursor.rest().size();
-  return cursor.ok();
+  const auto size = cursor.take<std::uint32_t>();
+  if (!cursor.ok()) return false;
+  record.size = size;
+  record.data = cursor.rest().substr(0, size);
+  record.bytes = 2 * sizeof(std::uint32_t) + record.header.size() + record.data.size();
+  return record.data.size() == size;
 }
 
 bool findRos1Field(std::string_view fields, std::string_view name, std::string_view& value) {

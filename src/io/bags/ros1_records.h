@@ -28,7 +28,8 @@ struct Ros1Record {
   std::uint8_t kind = 0;    ///< 0: the header has no field "op"
   std::string_view header;  ///< the fields
   std::string_view data;
-  std::size_t bytes = 0;  ///< size of the whole record
+  std::uint64_t size = 0;  ///< of the data, as announced
+  std::size_t bytes = 0;   ///< size of the whole record
 };
 
 /// Reads the record at `place`. Returns false if it does not fit into the bytes; `record` then holds the part that

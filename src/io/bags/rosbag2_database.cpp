@@ -58,6 +58,7 @@ class Rosbag2Database : public MessageFile {
   const std::vector<MessagePlace>& messages() const override { return messages_; }
   std::vector<std::string> warnings() const override { return warnings_; }
   std::vector<char> read(const MessagePlace& message) const override;
+  MessageStart readStart(const MessagePlace& message, std::size_t most) const override;
 
  private:
   void lookForJournals();
@@ -167,6 +168,18 @@ std::vector<char> Rosbag2Database::read(const MessagePlace& message) const {
     if (!error.empty()) fail("is compressed, but " + error);
     return expanded;
   });
+}
+
+MessageStart Rosbag2Database::readStart(const MessagePlace& message, std::size_t most) const {
+  MessageStart start;
+  bool is_read = false;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    is_read = database_->readBlobStart("messages", "data", static_cast<std::int64_t>(message.place),
+                                       std::max(most, kZstdMagicBytes), start.bytes, start.size);
+  }
+  const bool is_packed = isZstd({start.bytes.data(), start.bytes.size()});
+  return is_read && !is_packed ? start : MessageFile::readStart(message, most);
 }
 
 }  // namespace

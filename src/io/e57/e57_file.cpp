@@ -75,6 +75,7 @@ class E57File : public ScanFile {
   }
   std::string poseSource() const override { return with_pose_ > 0 ? "E57 pose of each scan" : ""; }
   bool inMapFrame() const override { return with_pose_ == 0; }  // by the standard
+  void releasePages() const override { contents_->pages.release(); }
   std::string coordinateSystem() const override { return contents_->description.coordinate_system; }
   std::vector<std::string> warnings() const override;
 

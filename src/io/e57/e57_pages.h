@@ -50,6 +50,8 @@ class E57Pages {
 
   /// Throws FileError if the file was truncated while it was read.
   void requireWhole() const { file_.requireWhole(); }
+  /// Gives the memory of the pages of the file that were read back to the operating system.
+  void release() const { file_.release(); }
 
  private:
   std::uint64_t pageData() const { return header_.page_bytes - sizeof(std::uint32_t); }

@@ -76,4 +76,12 @@ void MappedFile::requireWhole() const {
                                std::to_string(status.st_size) + " bytes while it was read");
 }
 
+void MappedFile::release(std::string_view part) const {
+  if (part.empty()) return;
+  static const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  const auto before = static_cast<std::size_t>(part.data() - bytes_.data()) % page;  // the map begins at a page
+  // Only a hint, so a failure does not matter.
+  madvise(const_cast<char*>(part.data() - before), part.size() + before, MADV_DONTNEED);
+}
+
 }  // namespace gaussmap::detail

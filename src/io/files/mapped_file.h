@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string_view>
+
 #include "gaussmap/version.h"
 
 namespace gaussmap::detail {
@@ -23,6 +24,12 @@ class GAUSSMAP_API MappedFile {
   /// Throws FileError if the file was truncated since it was opened: some of the bytes read are then zeros. Call it
   /// after the last byte has been read. (Reading a whole page that is gone raises SIGBUS, see handleSignals().)
   void requireWhole() const;
+  /// Gives the memory of a part of bytes() back to the operating system, because it will hardly be read again. If it is
+  /// read, the bytes come from the file again. Otherwise a process that reads many files seems to need their whole
+  /// size.
+  void release(std::string_view part) const;
+  /// Does the same for all bytes.
+  void release() const { release(bytes_); }
 
  private:
   std::filesystem::path path_;

@@ -36,6 +36,12 @@ struct MessagePlace {
   std::uint64_t place = 0;               ///< used only by the MessageFile
 };
 
+/// The first bytes of a message.
+struct MessageStart {
+  std::vector<char> bytes;
+  std::size_t size = 0;  ///< of the whole message
+};
+
 /// A recording of messages: an MCAP file, a bag of ROS 1, or a database of rosbag2. All functions are thread-safe.
 ///
 /// Opening reads the index, or the whole file once if it has none because the recording was not finished. It does not
@@ -51,9 +57,20 @@ class MessageFile {
   virtual const std::vector<MessagePlace>& messages() const = 0;
   /// Returns the bytes of a message. Throws FileError if the data are damaged.
   virtual std::vector<char> read(const MessagePlace& message) const = 0;
+  /// Returns the first bytes of a message: `most`, or all if it has fewer, or more if that is as easy. If the message
+  /// is large, this function is much faster than read(), but does not verify checksums. Throws FileError if the data
+  /// are damaged.
+  virtual MessageStart readStart(const MessagePlace& message, std::size_t most) const;
   /// Returns warnings about the recording, one or two sentences each, for example "was not finished".
   virtual std::vector<std::string> warnings() const { return {}; }
 };
+
+inline MessageStart MessageFile::readStart(const MessagePlace& message, std::size_t /*most*/) const {
+  MessageStart start;
+  start.bytes = read(message);
+  start.size = start.bytes.size();
+  return start;
+}
 
 /// Opens a recording: a file, or a directory with metadata.yaml, whose files are read as one recording. The kind
 /// follows from the content. Throws FileError.

@@ -66,6 +66,8 @@ class ScanFile {
   /// Returns the memory that a reader of the scan takes after the points were read [bytes], about; 0 if it takes none
   /// because it reads the points from the file each time.
   virtual std::size_t memoryOf(std::size_t scan) const { return 3 * sizeof(double) * info(scan).points; }
+  /// Gives the memory of the pages of the file that were read back to the operating system. The file can still be read.
+  virtual void releasePages() const {}
   /// Returns the coordinate reference system as text (WKT), or an empty string.
   virtual std::string coordinateSystem() const { return ""; }
   /// Returns warnings about the file, one or two sentences each, without the path.

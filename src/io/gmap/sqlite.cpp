@@ -60,6 +60,21 @@ Database::Database(const std::filesystem::path& path, Mode mode) : path_(path), 
     execute("PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF;");
 }
 
+bool Database::readBlobStart(const char* table, const char* column, std::int64_t row, std::size_t most,
+                             std::vector<char>& bytes, std::size_t& size) const {
+  renewSteps();
+  sqlite3_blob* blob = nullptr;
+  if (sqlite3_blob_open(handle_.get(), "main", table, column, row, 0, &blob) != SQLITE_OK) {
+    sqlite3_blob_close(blob);
+    return false;
+  }
+  size = static_cast<std::size_t>(sqlite3_blob_bytes(blob));
+  bytes.resize(std::min(size, most));
+  const int code = sqlite3_blob_read(blob, bytes.data(), static_cast<int>(bytes.size()), 0);
+  sqlite3_blob_close(blob);
+  return code == SQLITE_OK;
+}
+
 void Database::distrust() {
   std::error_code error;
   const std::uintmax_t bytes = std::filesystem::file_size(path_, error);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -28,6 +29,10 @@ class Database {
   Database(const std::filesystem::path& path, Mode mode);
 
   void execute(const std::string& sql);
+  /// Reads the first bytes of a blob, at most `most`, and stores its size. Returns false if there is no such blob, or
+  /// if the database is damaged.
+  bool readBlobStart(const char* table, const char* column, std::int64_t row, std::size_t most,
+                     std::vector<char>& bytes, std::size_t& size) const;
   const std::filesystem::path& path() const { return path_; }
   sqlite3* handle() const { return handle_.get(); }
   [[noreturn]] void fail(const std::string& doing) const;

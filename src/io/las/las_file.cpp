@@ -84,6 +84,7 @@ class LasFile : public ScanFile {
   bool inMapFrame() const override { return true; }
   std::string coordinateSystem() const override { return las_->header.crs.text; }
   std::size_t memoryOf(std::size_t) const override { return 0; }
+  void releasePages() const override { las_->file.release(); }
   std::vector<std::string> warnings() const override {
     std::vector<std::string> warnings = las_->header.warnings;
     for (std::string& warning : lasBoxWarnings(las_->header, las_->records(), las_->size()))

@@ -138,6 +138,7 @@ class LazFile : public ScanFile {
     return std::make_unique<LazReader>(source_, fields_);
   }
   bool inMapFrame() const override { return true; }
+  void releasePages() const override { source_->file->release(); }
   std::string coordinateSystem() const override { return source_->header.crs.text; }
   std::vector<std::string> warnings() const override {
     std::vector<std::string> warnings = warnings_;

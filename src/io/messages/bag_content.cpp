@@ -123,17 +123,27 @@ class ContentReader {
       return;
     const MessageTopic& topic = file_.topics()[message.topic];
     const MessageOrigin origin = originOf(path_, file_, message);
+    if (use.kind == TopicUse::Scans) return addScan(message, sizeOfScan(topic, message, origin));
     const std::vector<char> bytes = file_.read(message);
     const std::string_view view(bytes.data(), bytes.size());
-    if (use.kind == TopicUse::Scans) {
-      addScan(message, scanSize(topic.type, view, topic.encoding, origin));
-    } else if (is_poses) {
+    if (is_poses) {
       for (const StampedTransform& pose : decodePoses(topic.type, view, topic.encoding, origin))
         addPose(content_.pose_topics[use.index], message, pose);
     } else {
       for (const StampedTransform& transform : decodeTransforms(view, topic.encoding, origin))
         addTransform(topic, message, transform, use.kind == TopicUse::StaticTransforms);
     }
+  }
+
+  /// Reads only the start of a cloud if that is enough, because it can hold megabytes of points.
+  MessageScanSize sizeOfScan(const MessageTopic& topic, const MessagePlace& message, const MessageOrigin& origin) {
+    constexpr std::size_t kUsualHead = 4096;  // bytes before the points
+    if (isCloudType(topic.type)) {
+      const MessageStart start = file_.readStart(message, kUsualHead);
+      if (const auto size = scanSizeOfStart(start, topic.encoding, origin)) return *size;
+    }
+    const std::vector<char> bytes = file_.read(message);
+    return scanSize(topic.type, {bytes.data(), bytes.size()}, topic.encoding, origin);
   }
 
   nanoseconds timeOf(const MessagePlace& message, nanoseconds stamp, Occurrences& without_stamp) {

@@ -332,7 +332,7 @@ class PoseAssigner {
     if (!options_.log_times && topic.poses.stepBack() > kMostStepBack)
       fail("the times of " + shown(topic.topic.name) + " step back by " + stampText(topic.poses.stepBack()) + " s" +
            kResetAdvice);
-    return [this, &topic, to_sensor, moved = withChain(to_fixed), limits = topicLimits()](
+    return [&topic, to_sensor, moved = withChain(to_fixed), limits = topicLimits()](
                const BagScan& scan, PoseLookup& lookup) -> std::optional<Pose> {
       const std::optional<Pose> pose = topic.poses.at(scan.time, limits, lookup);
       if (!pose) {

@@ -55,7 +55,7 @@ CloudColumn axisOf(const CloudMessage& cloud, const char* name, const MessageOri
 
 /// Sets width, row_step and columns.
 void layOutRows(const CloudMessage& cloud, CloudLayout& layout, const MessageOrigin& origin) {
-  const std::size_t width = cloud.width, height = cloud.height, step = cloud.point_step, size = cloud.data.size();
+  const std::size_t width = cloud.width, height = cloud.height, step = cloud.point_step, size = cloud.data_size;
   const bool fits = step > 0 && layout.points <= size / step;
   const std::size_t row = fits ? width * step : 0, row_step = cloud.row_step;
   if (fits && layout.points * step == size) {
@@ -103,8 +103,8 @@ CloudLayout layoutOf(const CloudMessage& cloud, const MessageOrigin& origin) {
   layout.swapped = isSwapped(cloud.big_endian);
   layout.points = std::size_t{cloud.width} * cloud.height;
   if (layout.points == 0) {
-    if (!cloud.data.empty())
-      origin.fail("the data have " + std::to_string(cloud.data.size()) + " bytes, but width " +
+    if (cloud.data_size > 0)
+      origin.fail("the data have " + std::to_string(cloud.data_size) + " bytes, but width " +
                   std::to_string(cloud.width) + " and height " + std::to_string(cloud.height) + " mean no points");
     return layout;
   }

@@ -203,10 +203,22 @@ void checkAngles(const LaserMessage& laser, const MessageOrigin& origin) {
     origin.fail("angle_min or angle_increment is not finite");
 }
 
+/// Returns the size of a cloud, whose data are not needed.
+MessageScanSize sizeOfCloud(CloudMessage cloud, const MessageOrigin& origin) {
+  const CloudLayout layout = layoutOf(cloud, origin);
+  // Rows can have padding, but a single row needs none.
+  const bool has_unused = cloud.height == 1 && layout.row_step >= (layout.width + 1) * layout.point_step;
+  return {std::move(cloud.header), layout.points, has_unused, true};
+}
+
 }  // namespace
 
+bool isCloudType(const std::string& type) {
+  return type == "sensor_msgs/PointCloud2";
+}
+
 bool isScanType(const std::string& type) {
-  return type == "sensor_msgs/PointCloud2" || type == "sensor_msgs/LaserScan" || type == "sensor_msgs/PointCloud";
+  return isCloudType(type) || type == "sensor_msgs/LaserScan" || type == "sensor_msgs/PointCloud";
 }
 
 MessageScanSize scanSize(const std::string& type, std::string_view message, MessageEncoding encoding,
@@ -221,11 +233,17 @@ MessageScanSize scanSize(const std::string& type, std::string_view message, Mess
     checkChannels(cloud, origin);
     return {std::move(cloud.header), cloud.coordinates.size() / 3, false, true};
   }
-  CloudMessage cloud = decodeCloud(message, encoding, origin);
-  const CloudLayout layout = layoutOf(cloud, origin);
-  // Rows can have padding, but a single row needs none.
-  const bool has_unused = cloud.height == 1 && layout.row_step >= (layout.width + 1) * layout.point_step;
-  return {std::move(cloud.header), layout.points, has_unused, true};
+  return sizeOfCloud(decodeCloud(message, encoding, origin), origin);
+}
+
+std::optional<MessageScanSize> scanSizeOfStart(const MessageStart& start, MessageEncoding encoding,
+                                               const MessageOrigin& origin) {
+  try {
+    return sizeOfCloud(decodeCloudStart({start.bytes.data(), start.bytes.size()}, start.size, encoding, origin),
+                       origin);
+  } catch (const FileError&) {
+    return std::nullopt;
+  }
 }
 
 std::unique_ptr<ScanReader> readScan(const std::string& type, std::vector<char> message, MessageEncoding encoding,

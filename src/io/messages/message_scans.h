@@ -4,10 +4,12 @@
 #include <chrono>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "gaussmap/core/scans.h"
+#include "io/formats/message_file.h"
 #include "io/messages/ros_messages.h"
 
 // Scans that are one message each.
@@ -15,6 +17,9 @@ namespace gaussmap::detail {
 
 /// Returns true if scanSize() and readScan() read this type: sensor_msgs/PointCloud2, LaserScan and PointCloud.
 bool isScanType(const std::string& type);
+
+/// Returns true for sensor_msgs/PointCloud2.
+bool isCloudType(const std::string& type);
 
 /// What a message says about its scan, without the points.
 struct MessageScanSize {
@@ -27,6 +32,11 @@ struct MessageScanSize {
 /// Returns the header and the number of points of a scan. Throws FileError if the message is damaged.
 MessageScanSize scanSize(const std::string& type, std::string_view message, MessageEncoding encoding,
                          const MessageOrigin& origin);
+
+/// Does the same with the first bytes of a sensor_msgs/PointCloud2. Returns std::nullopt if they are too few or
+/// damaged: then scanSize() needs the whole message.
+std::optional<MessageScanSize> scanSizeOfStart(const MessageStart& start, MessageEncoding encoding,
+                                               const MessageOrigin& origin);
 
 /// Returns a reader of the points and values of a scan, which owns the message. Throws FileError if the message is
 /// damaged.

@@ -92,8 +92,10 @@ MessageHeader decodeHeader(WireReader& reader) {
   return header;
 }
 
-CloudMessage decodeCloud(std::string_view message, MessageEncoding encoding, const MessageOrigin& origin) {
-  WireReader reader(message, encoding, origin);
+namespace {
+
+/// Decodes everything before the data.
+CloudMessage decodeCloudHead(WireReader& reader) {
   CloudMessage cloud;
   cloud.header = decodeHeader(reader);
   cloud.height = reader.number<std::uint32_t>("height");
@@ -108,9 +110,28 @@ CloudMessage decodeCloud(std::string_view message, MessageEncoding encoding, con
   cloud.big_endian = reader.boolean("is_bigendian");
   cloud.point_step = reader.number<std::uint32_t>("point_step");
   cloud.row_step = reader.number<std::uint32_t>("row_step");
-  cloud.data = reader.bytes("data");
+  cloud.data_size = reader.number<std::uint32_t>("data");
+  return cloud;
+}
+
+}  // namespace
+
+CloudMessage decodeCloud(std::string_view message, MessageEncoding encoding, const MessageOrigin& origin) {
+  WireReader reader(message, encoding, origin);
+  CloudMessage cloud = decodeCloudHead(reader);
+  cloud.data = reader.bytes(cloud.data_size, "data");
   reader.boolean("is_dense");
   reader.requireEnd();
+  return cloud;
+}
+
+CloudMessage decodeCloudStart(std::string_view start, std::size_t size, MessageEncoding encoding,
+                              const MessageOrigin& origin) {
+  WireReader reader(start, encoding, origin);
+  CloudMessage cloud = decodeCloudHead(reader);
+  const std::size_t left = size - start.size() + reader.left(), needed = cloud.data_size + sizeof(std::uint8_t);
+  if (left < needed || !reader.canEnd(left - needed))
+    reader.fail("the size of the data contradicts that of the message");
   return cloud;
 }
 

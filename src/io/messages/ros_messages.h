@@ -38,7 +38,8 @@ struct CloudMessage {
   std::vector<CloudField> fields;
   bool big_endian = false;  ///< the data, not the message
   std::uint32_t point_step = 0, row_step = 0;
-  std::string_view data;
+  std::size_t data_size = 0;
+  std::string_view data;  ///< empty if only the start of the message was decoded
 };
 
 /// sensor_msgs/LaserScan.
@@ -67,6 +68,10 @@ struct StampedTransform {
 MessageHeader decodeHeader(WireReader& reader);
 
 CloudMessage decodeCloud(std::string_view message, MessageEncoding encoding, const MessageOrigin& origin);
+/// Decodes a cloud without its data from the first bytes of a message of `size` bytes. Throws FileError if these bytes
+/// are too few.
+CloudMessage decodeCloudStart(std::string_view start, std::size_t size, MessageEncoding encoding,
+                              const MessageOrigin& origin);
 LaserMessage decodeLaser(std::string_view message, MessageEncoding encoding, const MessageOrigin& origin);
 OldCloudMessage decodeOldCloud(std::string_view message, MessageEncoding encoding, const MessageOrigin& origin);
 

@@ -91,8 +91,7 @@ std::string_view WireReader::string(const char* what) {
 }
 
 std::string_view WireReader::bytes(const char* what) {
-  const auto length = number<std::uint32_t>(what);
-  return {take(length, 1, what), length};
+  return bytes(number<std::uint32_t>(what), what);
 }
 
 FloatsView WireReader::floats(const char* what) {
@@ -110,10 +109,9 @@ FloatsView WireReader::triples(const char* what) {
 std::size_t WireReader::structures(const char* what, std::size_t least) {
   if (sized_arrays_) number<std::uint32_t>(what);
   const std::size_t length = number<std::uint32_t>(what);
-  const std::size_t left = bytes_.size() - position_;
-  if (length > left / least)
+  if (length > left() / least)
     fail(std::string(what) + " has " + std::to_string(length) + " elements of at least " + std::to_string(least) +
-         " bytes, but the message has only " + std::to_string(left) + " bytes left");
+         " bytes, but the message has only " + std::to_string(left()) + " bytes left");
   return length;
 }
 
@@ -121,10 +119,13 @@ void WireReader::skipDoubles(std::size_t count, const char* what) {
   take(count * sizeof(double), sizeof(double), what);
 }
 
+bool WireReader::canEnd(std::size_t left) const {
+  return left <= (aligned_ ? kMostPadding : 0);
+}
+
 void WireReader::requireEnd() const {
-  const std::size_t left = bytes_.size() - position_;
-  if (left > (aligned_ ? kMostPadding : 0))
-    fail(std::to_string(left) + " bytes follow the message: it was written with another definition of its type");
+  if (!canEnd(left()))
+    fail(std::to_string(left()) + " bytes follow the message: it was written with another definition of its type");
 }
 
 }  // namespace gaussmap::detail

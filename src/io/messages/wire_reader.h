@@ -86,6 +86,8 @@ class WireReader {
   std::string_view string(const char* what);
   /// Returns an array of bytes.
   std::string_view bytes(const char* what);
+  /// Returns bytes whose number was read before.
+  std::string_view bytes(std::size_t count, const char* what) { return {take(count, 1, what), count}; }
   /// Returns an array of floats.
   FloatsView floats(const char* what);
   /// Returns an array of structures of three floats.
@@ -94,6 +96,10 @@ class WireReader {
   std::size_t structures(const char* what, std::size_t least);
   /// Skips numbers of eight bytes.
   void skipDoubles(std::size_t count, const char* what);
+  /// Returns the number of bytes that were not read yet.
+  std::size_t left() const { return bytes_.size() - position_; }
+  /// Returns true if so many bytes can be the padding behind the message.
+  bool canEnd(std::size_t left) const;
   /// Throws FileError if more bytes follow than padding can explain.
   void requireEnd() const;
 

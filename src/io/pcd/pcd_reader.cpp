@@ -242,6 +242,10 @@ void PcdReader::requireWhole() const {
   body_->file->requireWhole();
 }
 
+void PcdReader::releasePages() const {
+  body_->file->release();
+}
+
 void PcdReader::read(std::size_t first, PointBlock<3>& block) const {
   block.size = 0;
   if (!body_->loaded.load(std::memory_order_acquire)) {

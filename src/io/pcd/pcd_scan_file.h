@@ -28,6 +28,7 @@ class PcdScanFile : public ScanFile {
   std::unique_ptr<ScanReader> open(std::size_t scan) const override;
   std::string poseSource() const override { return kViewpointSource; }
   std::size_t memoryOf(std::size_t scan) const override;
+  void releasePages() const override { reader_.releasePages(); }
 
  private:
   PcdReader reader_;

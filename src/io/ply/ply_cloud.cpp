@@ -116,6 +116,7 @@ class PlyCloud : public ScanFile {
   std::size_t size() const override { return 1; }
   FileScanInfo info(std::size_t) const override { return {"", ply_->vertices.size()}; }
   std::unique_ptr<ScanReader> open(std::size_t) const override { return std::make_unique<PlyScanReader>(ply_); }
+  void releasePages() const override { ply_->file.release(); }
 
   std::vector<std::string> warnings() const override {
     std::vector<std::string> warnings;

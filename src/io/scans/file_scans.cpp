@@ -13,11 +13,18 @@ using namespace detail;
 
 namespace {
 
-/// Reads a scan, and keeps some of its points for the checks of coordinates.
+/// Reads a scan, and keeps some of its points for the checks of coordinates. At the end it releases the pages of the
+/// file, so that the memory of a program does not grow with the number of scans.
 class SampledReader : public ScanReader {
  public:
-  SampledReader(std::shared_ptr<const ScanReader> reader, std::size_t scan, std::shared_ptr<CoordinateSamples> samples)
-      : reader_(std::move(reader)), scan_(scan), samples_(std::move(samples)) {}
+  SampledReader(std::shared_ptr<const ScanFile> file, std::shared_ptr<const ScanReader> reader, std::size_t scan,
+                std::shared_ptr<CoordinateSamples> samples)
+      : file_(std::move(file)), reader_(std::move(reader)), scan_(scan), samples_(std::move(samples)) {}
+  ~SampledReader() override {
+    if (file_) file_->releasePages();
+  }
+  SampledReader(const SampledReader&) = delete;
+  SampledReader& operator=(const SampledReader&) = delete;
 
   std::size_t size() const override { return reader_->size(); }
   int columns() const override { return reader_->columns(); }
@@ -30,6 +37,7 @@ class SampledReader : public ScanReader {
   std::vector<double> values(const std::string& name) const override { return reader_->values(name); }
 
  private:
+  std::shared_ptr<const ScanFile> file_;  // nullptr: the reader was kept
   std::shared_ptr<const ScanReader> reader_;
   std::size_t scan_;
   std::shared_ptr<CoordinateSamples> samples_;
@@ -67,12 +75,13 @@ ScanInfo FileScans::info(std::size_t index) const {
 
 std::unique_ptr<ScanReader> FileScans::open(std::size_t index) const {
   std::shared_ptr<const ScanReader> reader = kept_->take(index);
+  std::shared_ptr<const ScanFile> file;
   if (!reader) {
-    const std::shared_ptr<const ScanFile> file = files_->file(file_of_.at(index));
+    file = files_->file(file_of_.at(index));
     reader = file->open(scans_[index].index);
     if (const std::size_t bytes = file->memoryOf(scans_[index].index); bytes > 0) kept_->keep(index, reader, bytes);
   }
-  return std::make_unique<SampledReader>(std::move(reader), index, samples_);
+  return std::make_unique<SampledReader>(std::move(file), std::move(reader), index, samples_);
 }
 
 std::string FileScans::kind(std::size_t index) const {

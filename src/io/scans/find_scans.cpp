@@ -2,7 +2,6 @@
 // Finds scans and their poses, and checks both.
 #include <algorithm>
 #include <functional>
-#include <map>
 #include <memory>
 #include <set>
 #include <system_error>
@@ -38,25 +37,27 @@ struct ListedScans {
   std::vector<FileScan> scans;
   std::vector<ScanPose> poses;
   std::vector<std::string> warnings;
-  std::map<std::string, std::filesystem::path> map_frames;  // the first recording with poses in this frame
+  std::string map_frame;               // of the first recording with poses
+  std::filesystem::path map_frame_of;  // this recording
   bool warned_of_frames = false;
 };
 
 /// Throws FileError if the poses of two recordings are in different frames. Warns if they are in frames of the same
 /// name that begin where the robot starts.
 void checkMapFrame(const std::filesystem::path& path, const std::string& frame, ListedScans& listed) {
-  if (listed.map_frames.empty()) {
-    listed.map_frames.emplace(frame, path);
+  if (listed.map_frame.empty()) {
+    listed.map_frame = frame;
+    listed.map_frame_of = path;
     return;
   }
-  const auto& [first_frame, first_path] = *listed.map_frames.begin();
-  if (first_frame != frame)
-    throw FileError(path, "the poses are in the frame " + frame + ", but those of " + first_path.string() + " are in " +
-                              first_frame + "; name a frame that all recordings have with --fixed-frame");
+  const std::string first = listed.map_frame_of.string();
+  if (listed.map_frame != frame)
+    throw FileError(path, "the poses are in the frame " + frame + ", but those of " + first + " are in " +
+                              listed.map_frame + "; name a frame that all recordings have with --fixed-frame");
   const std::string last = frame.substr(frame.find_last_of('/') + 1);
   if ((last != "odom" && last != "camera_init") || listed.warned_of_frames) return;
   listed.warned_of_frames = true;
-  listed.warnings.push_back(path.string() + " and " + first_path.string() + " have poses in " + frame +
+  listed.warnings.push_back(path.string() + " and " + first + " have poses in " + frame +
                             ", which begins at another place in each run; the map is wrong if they are different runs");
 }
 
@@ -82,6 +83,7 @@ void addScansOf(const std::filesystem::path& path, ListedScans& listed) {
   }
   if (const std::string frame = file->mapFrame(); !frame.empty()) checkMapFrame(path, frame, listed);
   for (const std::string& warning : file->warnings()) listed.warnings.push_back(path.string() + ": " + warning);
+  file->releasePages();
 }
 
 /// Returns true if the points of scans with the same pose show that the sensor stood still.
@@ -101,7 +103,7 @@ FoundScans findScans(const std::vector<std::filesystem::path>& inputs, const Fin
   std::vector<std::string> warnings;
   const std::vector<std::filesystem::path> paths = detail::listScans(inputs, warnings);
   warnOfScansGivenTwice(paths, warnings);
-  ListedScans listed{std::make_shared<ScanFiles>(openOptions(options)), {}, {}, {}, {}, false};
+  ListedScans listed{std::make_shared<ScanFiles>(openOptions(options)), {}, {}, {}, {}, {}, false};
   for (const std::filesystem::path& path : paths) addScansOf(path, listed);
   warnings.insert(warnings.end(), listed.warnings.begin(), listed.warnings.end());
   std::vector<ScanPose>& checked = listed.poses;

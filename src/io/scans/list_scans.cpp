@@ -35,7 +35,7 @@ std::string hintOfTexts(const std::filesystem::path& directory) {
   std::error_code error;
   for (std::filesystem::directory_iterator file(directory, error), end; !error && file != end; file.increment(error)) {
     const std::string extension = file->path().extension().string();
-    if (extension == ".txt" || extension == ".csv" || extension == ".asc")
+    if (isTextName(file->path()))
       return "; if the " + extension + " files are scans, give them: " + (directory / "*").string() + extension;
   }
   return "";

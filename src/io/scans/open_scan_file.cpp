@@ -37,10 +37,14 @@ BagPoses bagPosesOf(const OpenOptions& options) {
   return poses == "tf" ? BagPoses::Tf : BagPoses::Topic;
 }
 
+std::filesystem::path folderOf(const std::filesystem::path& path) {
+  return path.has_parent_path() ? path.parent_path() : ".";
+}
+
 /// Returns true for one of several files of a recording of rosbag2.
 bool isPartOfRecording(const std::filesystem::path& path) {
   std::error_code error;
-  const std::filesystem::path folder = path.parent_path();
+  const std::filesystem::path folder = folderOf(path);
   return std::filesystem::exists(folder / "metadata.yaml", error) && !std::filesystem::is_directory(path, error) &&
          findRecordingFiles(folder).files.size() > 1;
 }
@@ -57,7 +61,7 @@ std::shared_ptr<const ScanFile> openRecording(const std::filesystem::path& path,
   bag.log_times = recording.log_times;
   bag.has_extrinsic = options.has_extrinsic;
   bag.points_in_map = options.points_in_map;
-  const std::string folder = isPartOfRecording(path) ? path.parent_path().string() : "";
+  const std::string folder = isPartOfRecording(path) ? folderOf(path).string() : "";
   try {
     return openBagScans(openMessageFile(path), path, bag);
   } catch (const FileError& error) {
@@ -83,9 +87,8 @@ std::shared_ptr<const ScanFile> openGzip(const std::filesystem::path& path) {
   const std::string name = path.filename().string();
   if (name.find(".tar.") != std::string::npos || path.extension() == ".tgz")
     throw FileError(path, "is an archive (tar, gzip); expand it with tar xzf");
-  const std::string extension = scanExtension(path.stem()), inner = path.stem().extension().string();
-  const bool is_text = inner == ".txt" || inner == ".csv" || inner == ".asc";
-  if ((extension.empty() && !is_text) || extension == ".pcd") return openPcd(path);
+  const std::string extension = scanExtension(path.stem());
+  if ((extension.empty() && !isTextName(path.stem())) || extension == ".pcd") return openPcd(path);
   throw FileError(path, "is compressed with gzip; expand it with gunzip (only PCD files can stay compressed)");
 }
 
@@ -106,10 +109,10 @@ std::shared_ptr<const ScanFile> openByName(const std::filesystem::path& path, st
     throw FileError(path, "is " + kind + ", not a file of scans");
   if (start.substr(0, kRosbag2Metadata.size()) == kRosbag2Metadata)
     throw FileError(path, "describes a recording of rosbag2; give the folder with the recording instead");
-  const std::string lower = path.extension().string();
-  const bool is_named_text = lower == ".txt" || lower == ".csv" || lower == ".asc" || extension == ".xyz" ||
-                             extension == ".pts" || extension == ".ptx";
-  if (looksLikeText(start) || is_named_text || start[0] == '\xFF' || start[0] == '\xFE') return openCloudText(path);
+  const bool is_utf16 = start[0] == '\xFF' || start[0] == '\xFE';
+  if (looksLikeText(start) || is_utf16 || isTextName(path) || extension == ".xyz" || extension == ".pts" ||
+      extension == ".ptx")
+    return openCloudText(path);
   throw FileError(path,
                   "is not a kind of file that gaussmap reads (PCD, PLY, LAS, LAZ, E57, text, MCAP, bags of ROS); if it "
                   "holds raw numbers, name their fields, for example with --fields \"x y z intensity\"");

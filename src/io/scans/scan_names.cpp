@@ -57,6 +57,11 @@ std::string scanExtension(const std::filesystem::path& name) {
   return kExtensions.count(extension) > 0 ? extension : "";
 }
 
+bool isTextName(const std::filesystem::path& name) {
+  const std::string extension = lowerExtension(name);
+  return extension == ".txt" || extension == ".csv" || extension == ".asc";
+}
+
 std::string scanStem(const std::filesystem::path& scan) {
   const std::filesystem::path name = withoutGz(scan.filename());
   return scanExtension(name).empty() ? name.string() : name.stem().string();

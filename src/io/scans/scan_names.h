@@ -9,6 +9,9 @@
 
 namespace gaussmap::detail {
 
+/// Returns true for names of texts that can be scans, but also something else: .txt, .csv and .asc.
+bool isTextName(const std::filesystem::path& name);
+
 /// Returns the extension of a file of scans in lower case: ".pcd" (also for .pcd.gz), ".ply", ".las" and so on. Returns
 /// "" if listScans() does not treat a file with this name in a directory as scans. Tables such as .csv and .txt are not
 /// listed, because they often hold something else.

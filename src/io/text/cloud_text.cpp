@@ -137,6 +137,7 @@ class CloudText : public ScanFile {
     return std::make_unique<TextReader>(text_, text_->index.blocks[scan]);
   }
   std::size_t memoryOf(std::size_t) const override { return 0; }
+  void releasePages() const override { text_->file->release(); }
   std::vector<std::string> warnings() const override { return text_->layout.warnings; }
 
  private:

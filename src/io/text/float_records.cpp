@@ -82,6 +82,7 @@ class FloatRecords : public ScanFile {
   FileScanInfo info(std::size_t) const override { return {"", records_->count()}; }
   std::unique_ptr<ScanReader> open(std::size_t) const override { return std::make_unique<RecordsReader>(records_); }
   std::size_t memoryOf(std::size_t) const override { return 0; }
+  void releasePages() const override { records_->file->release(); }
   std::vector<std::string> warnings() const override { return records_->layout.warnings; }
 
  private:

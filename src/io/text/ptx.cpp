@@ -233,6 +233,7 @@ class PtxFile : public ScanFile {
   std::unique_ptr<ScanReader> open(std::size_t scan) const override { return std::make_unique<PtxReader>(ptx_, scan); }
   std::string poseSource() const override { return "PTX header of each scan"; }
   std::size_t memoryOf(std::size_t) const override { return 0; }
+  void releasePages() const override { ptx_->file->release(); }
   std::vector<std::string> warnings() const override { return ptx_->warnings; }
 
  private:

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <gtest/gtest.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -143,6 +145,20 @@ inline std::vector<std::string> listed(const detail::MessageFile& file) {
                     std::to_string(data.size()) + " " + crc);
   }
   return lines;
+}
+
+/// Expects that the starts of all messages, of several lengths, are those of the whole messages.
+inline void expectStarts(const detail::MessageFile& file) {
+  for (const detail::MessagePlace& message : file.messages()) {
+    const std::vector<char> data = file.read(message);
+    for (const std::size_t most : {std::size_t{0}, std::size_t{9}, data.size() / 2, data.size(), data.size() + 9}) {
+      const detail::MessageStart start = file.readStart(message, most);
+      EXPECT_EQ(start.size, data.size());
+      ASSERT_GE(start.bytes.size(), std::min(most, data.size()));
+      ASSERT_LE(start.bytes.size(), data.size());
+      EXPECT_TRUE(std::equal(start.bytes.begin(), start.bytes.end(), data.begin()));
+    }
+  }
 }
 
 inline std::string textOf(const std::vector<char>& data) {

@@ -2,6 +2,7 @@
 #include "io/bags/mcap_file.h"
 
 #include <gtest/gtest.h>
+#include <lz4frame.h>
 #include <zstd.h>
 
 #include "io/bags/bag_bytes.h"
@@ -17,6 +18,12 @@ using Lines = std::vector<std::string>;
 std::string zstd(const std::string& bytes) {
   std::string packed(ZSTD_compressBound(bytes.size()), '\0');
   packed.resize(ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(), 1));
+  return packed;
+}
+
+std::string lz4(const std::string& bytes, const LZ4F_preferences_t& options) {
+  std::string packed(LZ4F_compressFrameBound(bytes.size(), &options), '\0');
+  packed.resize(LZ4F_compressFrame(packed.data(), packed.size(), bytes.data(), bytes.size(), &options));
   return packed;
 }
 
@@ -176,6 +183,32 @@ TEST_F(McapFiles, KeepChunksWhoseMessagesAreInterleaved) {
   ASSERT_EQ(found.size(), 2000u);
   EXPECT_EQ(found[0], "/a 0 0");
   EXPECT_EQ(found[1999], "/a 1999 1");
+}
+
+// The start of a large message needs neither the whole chunk nor its CRC.
+TEST_F(McapFiles, ReadTheStartsOfMessages) {
+  std::string large(300000, '\0');
+  for (std::size_t i = 0; i < large.size(); ++i) large[i] = static_cast<char>(i * i >> 7);
+  const std::string small = mcap::message(1, 1, "small"), chunk = small + mcap::message(1, 2, large);
+  const std::string index = mcap::index(1, {{1, 0}, {2, small.size()}});
+  LZ4F_preferences_t lz4_options{};
+  for (const LZ4F_blockSizeID_t block : {LZ4F_max64KB, LZ4F_max4MB}) {
+    lz4_options.frameInfo.blockSizeID = block;
+    for (const std::string& compression : {std::string("zstd"), std::string("lz4"), std::string()}) {
+      const std::string packed = compression == "zstd"  ? zstd(chunk)
+                                 : compression == "lz4" ? lz4(chunk, lz4_options)
+                                                        : chunk;
+      const auto bytes = [&](std::uint32_t crc) {
+        return mcap::file(mcap::chunk(packed, compression, chunk.size(), crc) + index, kDefinitions);
+      };
+      test::expectStarts(*detail::openMessageFile(write(bytes(test::crcOf(chunk)))));
+      const auto damaged = detail::openMessageFile(write(bytes(1)));
+      const detail::MessageStart start = damaged->readStart(damaged->messages().at(1), 1000);
+      EXPECT_EQ(start.size, large.size());
+      EXPECT_EQ(test::textOf(start.bytes), large.substr(0, 1000));
+      EXPECT_NE(test::complaintOf([&] { damaged->read(damaged->messages().at(1)); }).find("CRC"), std::string::npos);
+    }
+  }
 }
 
 TEST_F(McapFiles, ExpandCompressedMessages) {

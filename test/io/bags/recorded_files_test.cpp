@@ -41,6 +41,7 @@ class RecordedFiles : public testing::TestWithParam<Recorded> {};
 TEST_P(RecordedFiles, HaveTheMessagesOfTheIndependentReader) {
   const fs::path path = formatFile(GetParam().file);
   EXPECT_TRUE(detail::isMessageFile(path));
+  test::expectStarts(*openMessageFile(path));
   const auto file = openMessageFile(path);
   EXPECT_EQ(file->kind(), GetParam().kind);
   std::vector<std::string> found = test::listed(*file), expected = linesOf(GetParam().messages);

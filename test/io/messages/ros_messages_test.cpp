@@ -111,6 +111,29 @@ void expectScan(const KnownMessage& message, const std::string& encoding, const 
   EXPECT_TRUE(values.empty());
 }
 
+TEST(RosMessages, OfCloudsTellTheirSizeAtTheirStart) {
+  std::size_t enough = 0;
+  for (const KnownMessage& message : knownMessages()) {
+    if (!isCloudType(message.type)) continue;
+    for (const auto& [encoding, bytes] : message.bytes) {
+      const MessageScanSize expected = scanSize(message.type, bytes, encodingOf(encoding), kOrigin);
+      for (std::size_t size = 0; size <= bytes.size(); ++size) {
+        const auto end = bytes.begin() + static_cast<std::ptrdiff_t>(size);
+        const auto found = scanSizeOfStart({{bytes.begin(), end}, bytes.size()}, encodingOf(encoding), kOrigin);
+        enough += found.has_value() && size < bytes.size();
+        EXPECT_TRUE(found || size < bytes.size());
+        if (!found) continue;
+        EXPECT_EQ(found->points, expected.points);
+        EXPECT_EQ(found->header.frame, expected.header.frame);
+        EXPECT_EQ(found->header.stamp, expected.header.stamp);
+      }
+      // The sizes of message and data contradict each other.
+      EXPECT_FALSE(scanSizeOfStart({{bytes.begin(), bytes.end()}, bytes.size() + 8}, encodingOf(encoding), kOrigin));
+    }
+  }
+  EXPECT_GT(enough, 0u);
+}
+
 void expectPoses(const std::vector<StampedTransform>& got, const KnownMessage& message) {
   ASSERT_EQ(got.size(), message.expected.size());
   for (std::size_t i = 0; i < got.size(); ++i) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 
 #include "io/files/temporary_directory.h"
 #include "io/scans/scan_names.h"
@@ -19,6 +20,38 @@ std::vector<std::string> namesOf(const std::vector<std::filesystem::path>& scans
   std::vector<std::string> names;
   for (const std::filesystem::path& scan : scans) names.push_back(scan.filename().string());
   return names;
+}
+
+/// Returns the resident memory of mapped files [bytes].
+std::size_t mappedBytes() {
+  std::ifstream status("/proc/self/status");
+  std::size_t kilobytes = 0;
+  for (std::string word; status >> word;)
+    if (word == "RssFile:") status >> kilobytes;
+  return kilobytes << 10;
+}
+
+TEST(FileScansOfManyFiles, ReleaseTheMemoryOfFilesThatWereRead) {
+  constexpr std::size_t kFiles = 20, kPoints = 100000;
+  const std::vector<float> records(4 * kPoints, 0.5f);
+  const std::string bytes(reinterpret_cast<const char*>(records.data()), records.size() * sizeof(float));
+  const TemporaryDirectory directory;
+  std::vector<FileScan> list;
+  for (std::size_t i = 0; i < kFiles; ++i) list.push_back({directory.write(std::to_string(i) + ".bin", bytes), Pose()});
+  const FileScans scans(list);
+  const std::size_t before = mappedBytes();
+  PointBlock<3> block;
+  for (int round = 0; round < 2; ++round)
+    for (std::size_t i = 0; i < kFiles; ++i) {
+      const std::unique_ptr<ScanReader> reader = scans.open(i);
+      std::size_t count = 0;
+      for (reader->read(0, block); block.size > 0; reader->read(count, block)) {
+        EXPECT_EQ(block.coordinate[2][0], 0.5);
+        count += block.size;
+      }
+      EXPECT_EQ(count, kPoints);
+    }
+  EXPECT_LT(mappedBytes(), before + 4 * bytes.size());
 }
 
 TEST(ScanList, SortsTheScansOfADirectoryAsPeopleCount) {

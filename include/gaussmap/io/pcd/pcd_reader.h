@@ -93,6 +93,8 @@ class GAUSSMAP_API PcdReader {
   /// Throws FileError if the file was truncated after it was opened. Points of earlier calls of read() can then be
   /// zeros. Call this function after the last read(). columns(), column() and records() call it themselves.
   void requireWhole() const;
+  /// Gives the memory of the pages of the file that were read back to the operating system. The file can still be read.
+  void releasePages() const;
 
   /// Returns the selected columns, size() numbers each. Integers of 8 bytes beyond 2^53 are rounded.
   ///

@@ -57,8 +57,9 @@ struct FileOptions {
 /// Scans in files of any kind that gaussmap reads. The kind of a file follows from its content.
 ///
 /// Each file is opened once. The points of a file that must be parsed or decompressed stay in memory only as long as
-/// their reader exists. The values of the points are the other fields of the file, for example "intensity". Elements of
-/// fields with several numbers have an index: "normal[2]".
+/// their reader exists, and so do the pages of other files. So memory depends on the largest scan, not on their number.
+/// The values of the points are the other fields of the file, for example "intensity". Elements of fields with several
+/// numbers have an index: "normal[2]".
 class GAUSSMAP_API FileScans : public Scans {
  public:
   /// Opens the files and checks their headers. Poses in the files are not used. Throws FileError if a file is not
