@@ -154,7 +154,8 @@ void checkOptions(const ScanInput& input, bool has_recording) {
   const bool has_file = !input.poses.empty() && !(has_recording && namesTopic(input.poses));
   require(has_file, input.pose_format != "auto", "--pose-format", "a file of poses (--poses)");
   require(has_file, input.match_poses != "auto", "--match-poses", "a file of poses (--poses)");
-  require(has_file, input.interpolate, "--interpolate", "a file of poses (--poses)");
+  require(has_file, input.interpolate, "--interpolate",
+          "a file of poses (--poses); recordings are always interpolated");
   require(has_file || has_recording, input.max_time_gap.has_value(), "--max-time-gap", "--poses");
   require(has_file || has_recording, input.skip_without_pose, "--skip-without-pose", "--poses");
   const RecordingOptions& recording = input.files.recording;

@@ -37,7 +37,7 @@ std::string startOf(const fs::path& path) {
 std::unique_ptr<MessageFile> openPlain(const fs::path& path, const fs::path& shown, std::string_view start) {
   if (isMcap(start)) return openMcap(path, shown);
   if (isRos1Bag(start)) return openRos1Bag(path, shown);
-  if (isSqliteWithoutOwner(start)) return openRosbag2Database(path, shown);
+  if (isSqliteWithoutApplicationId(start)) return openRosbag2Database(path, shown);
   throw FileError(shown, start.empty() ? "the file is empty: the recording was not started, or not copied"
                                        : "is not a recording: it starts with " + quote(start.substr(0, 16)) +
                                              ", expected an MCAP file, a database of rosbag2 or a bag of ROS 1");
@@ -45,7 +45,7 @@ std::unique_ptr<MessageFile> openPlain(const fs::path& path, const fs::path& sho
 
 bool isPlainRecording(const fs::path& path, std::string_view start) {
   if (isMcap(start) || isRos1Bag(start)) return true;
-  return isSqliteWithoutOwner(start) && (path.extension() == ".db3" || hasRosbag2Tables(path));
+  return isSqliteWithoutApplicationId(start) && (path.extension() == ".db3" || hasRosbag2Tables(path));
 }
 
 }  // namespace
@@ -83,7 +83,7 @@ bool isMessageFile(const fs::path& path) {
   if (!isZstd(start)) return isPlainRecording(path, start);
   try {
     const std::string expanded = expandStart(MappedFile(path).bytes(), kStart);
-    return isMcap(expanded) || isRos1Bag(expanded) || isSqliteWithoutOwner(expanded);
+    return isMcap(expanded) || isRos1Bag(expanded) || isSqliteWithoutApplicationId(expanded);
   } catch (const FileError&) {
     return false;
   }

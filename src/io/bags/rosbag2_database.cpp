@@ -184,7 +184,7 @@ MessageStart Rosbag2Database::readStart(const MessagePlace& message, std::size_t
 
 }  // namespace
 
-bool isSqliteWithoutOwner(std::string_view start) {
+bool isSqliteWithoutApplicationId(std::string_view start) {
   constexpr std::size_t kOwner = 68;  // application id, four bytes
   return start.substr(0, kSqliteMagic.size()) == kSqliteMagic && start.size() >= 100 &&
          start.substr(kOwner, 4) == std::string_view("\0\0\0\0", 4);

@@ -11,7 +11,7 @@ namespace gaussmap::detail {
 
 /// Returns true if a file starts like an SQLite database without an application id. Files of rosbag2 have none, map
 /// files have one. Needs the first 100 bytes.
-bool isSqliteWithoutOwner(std::string_view start);
+bool isSqliteWithoutApplicationId(std::string_view start);
 
 /// Returns true if a database has the tables of rosbag2. Returns false if it cannot be read.
 bool hasRosbag2Tables(const std::filesystem::path& path);

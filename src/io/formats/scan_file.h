@@ -22,7 +22,7 @@ struct FileScanInfo {
   std::optional<std::chrono::nanoseconds> time = std::nullopt;  ///< exact, since the zero of the file's clock
   /// Pose of the sensor in RecordingOptions::pose_frame, for poses from a pose file; std::nullopt: such poses are those
   /// of the sensor.
-  std::optional<Pose> mounting = std::nullopt;
+  std::optional<Pose> sensor_in_pose_frame = std::nullopt;
   double position_step = 0.0;     ///< step in which the position of the pose is written as text [m]; 0: unknown
   std::uint64_t fingerprint = 0;  ///< differs between files with different points; 0: unknown
 };

@@ -71,6 +71,11 @@ class PoseAssigner {
     return above.empty() ? (tree_.has(of) ? of : "") : above.back();
   }
 
+  [[noreturn]] void failOfMovingFrame(const std::string& fixed) const {
+    fail("--fixed-frame " + shown(fixed) + ": this is the frame of the scans, which moves; the frames are " +
+         tree_.frames());
+  }
+
   /// Throws FileError if a frame that the user names is not in tf.
   void requireFrame(const char* option, const std::string& name) const {
     if (!name.empty() && !tree_.has(name) && frameName(name) != frame())
@@ -87,6 +92,7 @@ class PoseAssigner {
       requireFrame("--pose-frame", options_.pose_frame);
     }
     const std::string used = usedFrame(), fixed = fixedFrame(used);
+    if (!options_.fixed_frame.empty() && fixed == used) failOfMovingFrame(fixed);
     std::string reason;
     const std::optional<TransformChain> chain = fixed.empty() ? std::nullopt : tree_.chain(fixed, used, reason);
     if (chain && chain->moves && (isFixed(fixed, odometry) || odometry.empty())) {
@@ -165,9 +171,11 @@ class PoseAssigner {
       fail("--pose-frame " + shown(used) + ": tf does not give the pose of " + frameText() + " in this frame; " +
            extrinsicAdvice(used));
     if (chain->steps.empty() && options_.fixed_frame.empty()) fail("tf has no frame above " + frameText());
-    if (chain->steps.empty())
-      fail("--fixed-frame " + shown(fixed) + ": this is the frame of the scans, which moves; the frames are " +
-           tree_.frames());
+    if (chain->steps.empty()) failOfMovingFrame(fixed);
+    if (options_.points_in_map && chain->moves)
+      warn("the scans are in the frame " + frameText() +
+           ", which moves, but --frame map means that the points are in a "
+           "fixed frame");
     assigned_.source = "tf: " + shown(used) + " in " + shown(fixed);
     assigned_.map_frame = fixed;
     if (!chain->moves && content_.scans.size() > 1)
@@ -181,6 +189,9 @@ class PoseAssigner {
   void inFixedFrame() {
     if (options_.points_in_map) return positions();
     std::string reason;
+    if (options_.poses != BagPoses::Automatic)
+      warn("the points of " + topicText() + " are in the fixed frame " + shown(frame()) +
+           ", so the poses are not used; with --frame map they are the positions of the sensor");
     std::string fixed = options_.fixed_frame.empty() ? frame() : frameName(options_.fixed_frame);
     for (const std::string& above : tree_.above(frame()))
       if (options_.fixed_frame.empty() && lastPart(above) == "map") fixed = above;
@@ -337,7 +348,7 @@ class PoseAssigner {
       const std::optional<Pose> pose = topic.poses.at(scan.time, limits, lookup);
       if (!pose) {
         lookup.reason = "its time is " + stampText(topic.poses.distance(scan.time)) +
-                        " s from the nearest pose, but the limit is " + stampText(limits.hold) +
+                        " s from the nearest pose, but the limit is " + stampText(limits.nearest) +
                         " s; the times of the poses are " + stampText(topic.poses.first()) + " to " +
                         stampText(topic.poses.last());
         return std::nullopt;
@@ -360,8 +371,8 @@ class PoseAssigner {
       PoseLookup lookup;
       assigned_.poses[i] = pose_of(content_.scans[i], lookup);
       if (assigned_.poses[i]) {
-        held += lookup.held > kRounding;
-        farthest = std::max(farthest, lookup.held);
+        held += lookup.to_nearest > kRounding;
+        farthest = std::max(farthest, lookup.to_nearest);
         continue;
       }
       is_outside = is_outside && lookup.is_outside;

@@ -31,7 +31,7 @@ class OpenBagScans : public ScanFile {
   FileScanInfo info(std::size_t scan) const override {
     const BagScan& one = scans_.at(scan);
     FileScanInfo info{topic_.name + " " + stampText(one.time), one.points, std::nullopt, one.time};
-    (mounted_ ? info.mounting : info.pose) = assigned_.poses.at(scan);
+    (mounted_ ? info.sensor_in_pose_frame : info.pose) = assigned_.poses.at(scan);
     return info;
   }
   std::unique_ptr<ScanReader> open(std::size_t scan) const override {

@@ -53,7 +53,7 @@ struct BagOptions {
 /// twice this gap apart. There is a warning if poses were taken without interpolation.
 ///
 /// A scan without a pose has none in its info(), and missingPoses() says why. With BagPoses::None and a pose_frame,
-/// FileScanInfo::mounting is the pose of the sensor in this frame, from tf.
+/// FileScanInfo::sensor_in_pose_frame is the pose of the sensor in this frame, from tf.
 ///
 /// Throws FileError in these cases:
 /// - The topic of the scans or of the poses is missing, of a wrong type, or not clear. The message lists the topics.

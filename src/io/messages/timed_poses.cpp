@@ -59,18 +59,18 @@ std::optional<Pose> TimedPoses::at(nanoseconds time, const PoseTimeLimits& limit
   if (after < times_.size() && times_[after] == time) return poses_[after];
   if (after > 0 && after < times_.size()) {
     const nanoseconds step = times_[after] - times_[after - 1], part = time - times_[after - 1];
-    if (step <= limits.between)
+    if (step <= limits.interpolation)
       return between(poses_[after - 1], poses_[after],
                      static_cast<double>(part.count()) / static_cast<double>(step.count()));
-    if (std::min(part, step - part) > limits.hold) return std::nullopt;
-    lookup.held = std::max(lookup.held, std::min(part, step - part));
+    if (std::min(part, step - part) > limits.nearest) return std::nullopt;
+    lookup.to_nearest = std::max(lookup.to_nearest, std::min(part, step - part));
     return poses_[part <= step - part ? after - 1 : after];
   }
-  if (distance(time) > limits.hold) {
+  if (distance(time) > limits.nearest) {
     lookup.is_outside = true;
     return std::nullopt;
   }
-  lookup.held = std::max(lookup.held, distance(time));
+  lookup.to_nearest = std::max(lookup.to_nearest, distance(time));
   return after == 0 ? poses_.front() : poses_.back();
 }
 

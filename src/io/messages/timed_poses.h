@@ -13,15 +13,15 @@ namespace gaussmap::detail {
 
 /// How far the times of poses may be from the time of a lookup.
 struct PoseTimeLimits {
-  std::chrono::nanoseconds between{0};  ///< interpolate between two poses that are at most this far apart
-  std::chrono::nanoseconds hold{0};     ///< otherwise take the nearest pose, if it is at most this far away
+  std::chrono::nanoseconds interpolation{0};  ///< interpolate between two poses that are at most this far apart
+  std::chrono::nanoseconds nearest{0};        ///< otherwise take the nearest pose, if it is at most this far away
 };
 
 /// What happened when poses were looked up at a time.
 struct PoseLookup {
-  std::string reason;                ///< why there is no pose
-  bool is_outside = false;           ///< there is no pose, because the time is before the first or after the last one
-  std::chrono::nanoseconds held{0};  ///< largest distance to a pose that was taken without interpolation
+  std::string reason;       ///< why there is no pose
+  bool is_outside = false;  ///< there is no pose, because the time is before the first or after the last one
+  std::chrono::nanoseconds to_nearest{0};  ///< largest distance to a pose that was taken without interpolation
 };
 
 /// Poses at times. Call finish() once after the last add(); then all functions are thread-safe.

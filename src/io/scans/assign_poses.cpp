@@ -118,8 +118,8 @@ void readPoses(std::vector<ScanPose>& scans, const std::vector<ScanKey>& keys, c
   for (std::size_t i = 0; i < scans.size(); ++i)
     if (matched.poses[i]) {
       scans[i].pose = *matched.poses[i];
-      if (scans[i].mounting && poseFault(scans[i].pose).empty())
-        scans[i].pose = normalised(scans[i].pose) * *scans[i].mounting;
+      if (scans[i].sensor_in_pose_frame && poseFault(scans[i].pose).empty())
+        scans[i].pose = normalised(scans[i].pose) * *scans[i].sensor_in_pose_frame;
       scans[i].position_step = 0.0;
       scans[i].in_map_frame = false;
     }

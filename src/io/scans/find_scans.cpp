@@ -76,7 +76,7 @@ void addScansOf(const std::filesystem::path& path, ListedScans& listed) {
     scan.position_step = info.position_step;
     scan.has_pose = info.pose.has_value();
     scan.in_map_frame = file->inMapFrame();
-    scan.mounting = info.mounting;
+    scan.sensor_in_pose_frame = info.sensor_in_pose_frame;
     scan.file_poses = file_poses;
     scan.fingerprint =
         info.fingerprint != 0 ? info.fingerprint : std::hash<std::string>()(path.string() + ":" + std::to_string(i));

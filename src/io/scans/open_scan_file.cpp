@@ -63,7 +63,10 @@ std::shared_ptr<const ScanFile> openRecording(const std::filesystem::path& path,
   bag.points_in_map = options.points_in_map;
   const std::string folder = isPartOfRecording(path) ? folderOf(path).string() : "";
   try {
-    return openBagScans(openMessageFile(path), path, bag);
+    std::shared_ptr<const ScanFile> file = openBagScans(openMessageFile(path), path, bag);
+    const MissingPoses missing = file->missingPoses();
+    if (!folder.empty() && file->poseSource().empty() && !missing.reason.empty()) throw FileError(path, missing.reason);
+    return file;
   } catch (const FileError& error) {
     if (folder.empty()) throw;
     const std::string text = error.what();

@@ -141,7 +141,10 @@ std::vector<PointField> guessNames(const std::filesystem::path& path, const Text
     name(7, normals);
     clear = true;
   }
-  if (!clear) fail(std::to_string(columns) + " columns without names; " + kUseFields + " (\"-\" skips a column)");
+  // A row of a trajectory has 8 columns (time, position, quaternion) or 12 (matrix).
+  const char* const poses = columns == 8 || columns == 12 ? "; if the rows are poses, give the file with --poses" : "";
+  if (!clear)
+    fail(std::to_string(columns) + " columns without names; " + kUseFields + " (\"-\" skips a column)" + poses);
   return fields;
 }
 

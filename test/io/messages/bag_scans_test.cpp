@@ -210,7 +210,7 @@ TEST_F(BagScansTest, GiveMountingsForPosesFromElsewhere) {
   options.pose_frame = "base_link";
   const auto scans = open(options);
   EXPECT_FALSE(scans->info(3).pose);
-  EXPECT_EQ(scans->info(3).mounting.value().translation.x(), 2.0);
+  EXPECT_EQ(scans->info(3).sensor_in_pose_frame.value().translation.x(), 2.0);
   options.pose_frame = "robot";
   expectComplaint(complaint(options), "drive.bag", {"--pose-frame robot: tf has no such frame"});
 }

@@ -39,7 +39,7 @@ TEST(CoordinateChecks, ReportFloatsThatAreCoarserThanATenthOfACell) {
   const std::string text = warningsAbout(far, 0.2);
   EXPECT_NE(text.find("a.pcd and 1 more: "), std::string::npos) << text;
   EXPECT_NE(text.find("steps of 0.5 m"), std::string::npos) << text;
-  EXPECT_NE(text.find("doubles (F 8)"), std::string::npos) << text;
+  EXPECT_NE(text.find("doubles (in PCD files: SIZE 8)"), std::string::npos) << text;
   EXPECT_NE(warningsAbout(far, 0.2, true).find("Change SIZE"), std::string::npos);
   EXPECT_EQ(warningsAbout(far, 10.0), "");
   EXPECT_EQ(warningsAbout(spread({40, 40, 3}, {690000, 5330000, 500}), 0.2), "");  // real doubles
