@@ -22,6 +22,10 @@ struct Row {
 
 using T = MistakesTable;
 
+std::string recording(const std::string& name) {
+  return GAUSSMAP_TEST_DATA "/formats/robots/" + name;
+}
+
 const std::vector<Row>& rows() {
   static const std::vector<Row> all = {
       // Poses and scans
@@ -349,6 +353,20 @@ const std::vector<Row>& rows() {
          const std::string map = t.map();
          return Words{"pcd2map", t.own("scans/2.pcd"), "--update", map};
        }},
+      // Recordings
+      {"choose one with --topic", [](const T& t) { return t.build(recording("two_lidars.mcap")); }},
+      {"no poses: the recording has no odometry", [](const T& t) { return t.build(recording("no_poses.mcap")); }},
+      {"no transform in tf has the frame", [](const T& t) { return t.build(recording("without_lidar_frame.mcap")); }},
+      {"scans have no pose, first", [](const T& t) { return t.build(recording("late_tf.mcap")); }},
+      {"step back by", [](const T& t) { return t.build(recording("clock_reset.mcap")); }},
+      {"are from different clocks: use --log-times", [](const T& t) { return t.build(recording("boot_clock.mcap")); }},
+      {"this is one file of the recording in", [](const T& t) { return t.build(recording("split/drive_1.mcap")); }},
+      {"tf has no such frame",
+       [](const T& t) {
+         return t.build(recording("tf.mcap"), {"--fixed-frame", "world"});
+       }},
+      {"name a frame that all recordings have with --fixed-frame",
+       [](const T& t) { return t.build(recording("tf.mcap"), {recording("laser.mcap")}); }},
   };
   return all;
 }
