@@ -6,6 +6,7 @@
 #include "commands/map_task.h"
 #include "commands/motion.h"
 #include "common/command.h"
+#include "common/report.h"
 #include "gaussmap/core/pose.h"
 #include "gaussmap/editing/transform_map.h"
 

@@ -13,15 +13,19 @@ using namespace detail;
 
 namespace {
 
-/// Reads a scan, and keeps some of its points for the checks of coordinates. At the end it releases the pages of the
-/// file, so that the memory of a program does not grow with the number of scans.
+/// Reads a scan, and keeps some of its points for the checks of coordinates. At the end, pages of files are released,
+/// so that the memory of a program does not grow with the number of scans.
 class SampledReader : public ScanReader {
  public:
   SampledReader(std::shared_ptr<const ScanFile> file, std::shared_ptr<const ScanReader> reader, std::size_t scan,
-                std::shared_ptr<CoordinateSamples> samples)
-      : file_(std::move(file)), reader_(std::move(reader)), scan_(scan), samples_(std::move(samples)) {}
+                std::shared_ptr<CoordinateSamples> samples, std::shared_ptr<RecentFiles> recent)
+      : file_(std::move(file)),
+        reader_(std::move(reader)),
+        scan_(scan),
+        samples_(std::move(samples)),
+        recent_(std::move(recent)) {}
   ~SampledReader() override {
-    if (file_) file_->releasePages();
+    if (file_) recent_->add(file_, size());
   }
   SampledReader(const SampledReader&) = delete;
   SampledReader& operator=(const SampledReader&) = delete;
@@ -41,6 +45,7 @@ class SampledReader : public ScanReader {
   std::shared_ptr<const ScanReader> reader_;
   std::size_t scan_;
   std::shared_ptr<CoordinateSamples> samples_;
+  std::shared_ptr<RecentFiles> recent_;
 };
 
 }  // namespace
@@ -53,7 +58,8 @@ FileScans::FileScans(std::vector<FileScan> scans, ScanFrame frame, std::shared_p
       files_(std::move(files)),
       frame_(frame),
       samples_(std::make_shared<CoordinateSamples>(scans_.size())),
-      kept_(std::make_shared<KeptReaders>()) {
+      kept_(std::make_shared<KeptReaders>()),
+      recent_(std::make_shared<RecentFiles>()) {
   file_of_.reserve(scans_.size());
   for (const FileScan& scan : scans_) {
     const ScanFiles::Added added = files_->add(scan.path);
@@ -81,7 +87,7 @@ std::unique_ptr<ScanReader> FileScans::open(std::size_t index) const {
     reader = file->open(scans_[index].index);
     if (const std::size_t bytes = file->memoryOf(scans_[index].index); bytes > 0) kept_->keep(index, reader, bytes);
   }
-  return std::make_unique<SampledReader>(std::move(file), std::move(reader), index, samples_);
+  return std::make_unique<SampledReader>(std::move(file), std::move(reader), index, samples_, recent_);
 }
 
 std::string FileScans::kind(std::size_t index) const {

@@ -23,13 +23,13 @@ struct PosesInFile {
 /// Input of the pose checks for one scan; small enough to keep for all scans.
 struct ScanPose {
   std::filesystem::path path;
-  Pose pose;                                    ///< as given, with a quaternion that is not normalised
-  std::uint64_t fingerprint = 0;                ///< differs between different clouds
-  double position_step = 0.0;                   ///< PcdHeader::viewpoint_step; 0 if the pose comes from elsewhere
+  Pose pose;                      ///< as given, with a quaternion that is not normalised
+  std::uint64_t fingerprint = 0;  ///< differs between different clouds
+  double position_step = 0.0;     ///< PcdHeader::viewpoint_step; 0 if the pose comes from elsewhere
   std::optional<Pose> sensor_in_pose_frame = std::nullopt;  ///< FileScanInfo::sensor_in_pose_frame
-  bool has_pose = true;                         ///< false: the file gives no pose, and `pose` is the identity
-  bool in_map_frame = false;                    ///< true: no pose is needed
-  std::string name = "";                        ///< of the scan in a file with several scans
+  bool has_pose = true;       ///< false: the file gives no pose, and `pose` is the identity
+  bool in_map_frame = false;  ///< true: no pose is needed
+  std::string name = "";      ///< of the scan in a file with several scans
   std::optional<std::chrono::nanoseconds> time = std::nullopt;  ///< from the file
   std::shared_ptr<const PosesInFile> file_poses = nullptr;      ///< nullptr: as if both texts were empty
 

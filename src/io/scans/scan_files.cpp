@@ -25,6 +25,19 @@ std::shared_ptr<const ScanFile> ScanFiles::file(std::size_t number) const {
   return number < open_.size() ? open_[number] : openScanFile(paths_.at(number), options_);
 }
 
+void RecentFiles::add(const std::shared_ptr<const ScanFile>& file, std::size_t points) {
+  constexpr std::size_t kMostPoints = std::size_t{1} << 20;  // 16 to 32 MiB
+  constexpr std::size_t kMostFiles = 64;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  files_.emplace_back(file, points);
+  points_ += points;
+  while (points_ > kMostPoints || files_.size() > kMostFiles) {
+    points_ -= files_.front().second;
+    files_.front().first->releasePages();
+    files_.pop_front();
+  }
+}
+
 void KeptReaders::allow(std::size_t bytes) {
   const std::lock_guard<std::mutex> lock(mutex_);
   budget_ = bytes;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -35,6 +36,19 @@ class ScanFiles {
   std::vector<std::filesystem::path> paths_;
   std::vector<std::shared_ptr<const ScanFile>> open_;  // the first files
   std::map<std::filesystem::path, std::size_t> numbers_;
+};
+
+/// The files that were read last. Their pages stay in memory, because they may be read again, as after the check of
+/// poses; those of older files are released. Thread-safe.
+class RecentFiles {
+ public:
+  /// Notes that a scan with this many points was read.
+  void add(const std::shared_ptr<const ScanFile>& file, std::size_t points);
+
+ private:
+  std::mutex mutex_;
+  std::size_t points_ = 0;
+  std::deque<std::pair<std::shared_ptr<const ScanFile>, std::size_t>> files_;
 };
 
 /// Readers that have their points in memory, until they are taken. Thread-safe.

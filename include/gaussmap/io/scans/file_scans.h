@@ -21,6 +21,7 @@ struct FoundScans;
 namespace detail {
 class CoordinateSamples;
 class KeptReaders;
+class RecentFiles;
 class ScanFiles;
 }  // namespace detail
 
@@ -57,9 +58,9 @@ struct FileOptions {
 /// Scans in files of any kind that gaussmap reads. The kind of a file follows from its content.
 ///
 /// Each file is opened once. The points of a file that must be parsed or decompressed stay in memory only as long as
-/// their reader exists, and so do the pages of other files. So memory depends on the largest scan, not on their number.
-/// The values of the points are the other fields of the file, for example "intensity". Elements of fields with several
-/// numbers have an index: "normal[2]".
+/// their reader exists. The pages of other files are released when about a million more points were read. So memory
+/// depends on the largest scan, not on the number of scans. The values of the points are the other fields of the file,
+/// for example "intensity". Elements of fields with several numbers have an index: "normal[2]".
 class GAUSSMAP_API FileScans : public Scans {
  public:
   /// Opens the files and checks their headers. Poses in the files are not used. Throws FileError if a file is not
@@ -106,6 +107,7 @@ class GAUSSMAP_API FileScans : public Scans {
   ScanFrame frame_;
   std::shared_ptr<detail::CoordinateSamples> samples_;  // of the points that were read
   std::shared_ptr<detail::KeptReaders> kept_;
+  std::shared_ptr<detail::RecentFiles> recent_;
 };
 
 /// Returns the files of a list of inputs, in the order of the inputs.
