@@ -25,7 +25,7 @@ class SampledReader : public ScanReader {
         samples_(std::move(samples)),
         recent_(std::move(recent)) {}
   ~SampledReader() override {
-    if (file_) recent_->add(file_, size());
+    if (file_) recent_->add(file_, reader_->size());
   }
   SampledReader(const SampledReader&) = delete;
   SampledReader& operator=(const SampledReader&) = delete;

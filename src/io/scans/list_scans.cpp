@@ -36,7 +36,7 @@ std::string hintOfTexts(const std::filesystem::path& directory) {
   for (std::filesystem::directory_iterator file(directory, error), end; !error && file != end; file.increment(error)) {
     const std::string extension = file->path().extension().string();
     if (isTextName(file->path()))
-      return "; if the " + extension + " files are scans, give them: " + (directory / "*").string() + extension;
+      return "; if the " + extension + " files are scans, give them: " + (directory / ("*" + extension)).string();
   }
   return "";
 }

@@ -13,7 +13,7 @@ constexpr std::size_t kMaxOpen = 1024;
 
 ScanFiles::Added ScanFiles::add(const std::filesystem::path& path) {
   if (const auto known = numbers_.find(path); known != numbers_.end()) return {known->second, file(known->second)};
-  const Added added{paths_.size(), openScanFile(path, options_)};
+  Added added{paths_.size(), openScanFile(path, options_)};
   added.file->releasePages();  // opening a text reads the whole file
   numbers_.emplace(path, added.number);
   paths_.push_back(path);

@@ -38,7 +38,7 @@ constexpr KnownRecord kNuScenes = {"x y z intensity ring"};
 /// Returns true if x or y spreads more than twice as far in some of `period` interleaved groups of records as in
 /// others. That happens if the true records are longer or shorter than these.
 bool isMixed(const RecordLayout& layout, std::string_view bytes, std::size_t period) {
-  constexpr std::size_t kEnough = 100, kMost = 10000;  // records
+  constexpr std::size_t kEnough = 100, kMost = 2000;  // records
   const std::size_t count = std::min(bytes.size() / layout.size, kMost);
   if (count < kEnough) return false;
   std::vector<double> values(count);
