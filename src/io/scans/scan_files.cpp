@@ -26,12 +26,12 @@ std::shared_ptr<const ScanFile> ScanFiles::file(std::size_t number) const {
 }
 
 void RecentFiles::add(const std::shared_ptr<const ScanFile>& file, std::size_t points) {
-  constexpr std::size_t kMostPoints = std::size_t{1} << 20;  // 16 to 32 MiB
-  constexpr std::size_t kMostFiles = 64;
+  constexpr std::size_t kMostRecentPoints = std::size_t{1} << 20;  // 16 to 32 MiB
+  constexpr std::size_t kMostRecentFiles = 64;
   const std::lock_guard<std::mutex> lock(mutex_);
   files_.emplace_back(file, points);
   points_ += points;
-  while (points_ > kMostPoints || files_.size() > kMostFiles) {
+  while (points_ > kMostRecentPoints || files_.size() > kMostRecentFiles) {
     points_ -= files_.front().second;
     files_.front().first->releasePages();
     files_.pop_front();
