@@ -23,6 +23,7 @@
 #include "gaussmap/mapping/build.h"
 #include "gaussmap/mapping/refine.h"
 #include "gaussmap/sensor/projection.h"
+#include "io/files/temporary_directory.h"
 #include "mesh/mesh_distance.h"
 #include "subcommands.h"
 
@@ -117,9 +118,8 @@ void compareSizes(const fs::path& folder) {
   const GaussianMap<3> map =
       refine<3>(build<3>(accumulateScans(FileScans(sources), {}).moments, MapOptions()), PerCell{2.0}).map;
 
-  std::string work = (fs::temp_directory_path() / "gaussmap-finished-XXXXXX").string();
-  if (::mkdtemp(work.data()) == nullptr) throw std::runtime_error("no temporary directory");
-  const fs::path path = fs::path(work) / "map.gmap";
+  const test::TemporaryDirectory work;
+  const fs::path path = work.path() / "map.gmap";
   save(path, finish<3>(map, 1), {}, {true, 15, 0, Precision::Finished});
   const GaussianMap<3> finished = load(path);
   SampleOptions sampling;
@@ -135,8 +135,7 @@ void compareSizes(const fs::path& folder) {
   std::fflush(stdout);
   double resolution = 4.0 * error;       // a voxel crossed by a surface is about a quarter of its side away
   for (const bool rays : {false, true})  // end points first: faster, and nearly the same resolution
-    resolution = compare(scans, truth, rays, resolution, error, static_cast<double>(size.file), work);
-  fs::remove_all(work);
+    resolution = compare(scans, truth, rays, resolution, error, static_cast<double>(size.file), work.path());
 }
 
 }  // namespace

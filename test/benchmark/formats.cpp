@@ -2,7 +2,6 @@
 // gaussmap_benchmark formats FILE...: how fast the same scans are read from files of many kinds, beside PCL and PCD
 // files. All times are of one thread and include opening. The files are in the cache of the operating system.
 #include <pcl/io/pcd_io.h>
-#include <stdlib.h>
 
 #include <CLI/CLI.hpp>
 #include <Eigen/Core>
@@ -21,6 +20,7 @@
 
 #include "clock.h"
 #include "gaussmap/io/scans/file_scans.h"
+#include "io/files/temporary_directory.h"
 #include "io/scans/open_scan_file.h"
 #include "measure.h"
 #include "subcommands.h"
@@ -189,23 +189,10 @@ void print(const std::vector<Way>& ways, int runs) {
   }
 }
 
-struct TemporaryFolder {
-  std::string path = std::filesystem::temp_directory_path() / "gaussmap_formats_XXXXXX";
-  TemporaryFolder() {
-    if (mkdtemp(path.data()) == nullptr) throw std::runtime_error(path + ": cannot be made");
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-};
-
 void runFormats(const Given& given) {
-  const TemporaryFolder folder;
+  const test::TemporaryDirectory folder;
   std::vector<Way> ways = waysOf(given.files);
-  addPcl(folder.path, ways);
+  addPcl(folder.path(), ways);
   for (std::size_t i = 0; i < ways.size(); ++i) {
     Way& way = ways[i];
     if (i < 2)

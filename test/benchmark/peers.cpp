@@ -11,6 +11,7 @@
 #include "gaussmap/io/pcd/pcd_reader.h"
 #include "gaussmap/io/scans/file_scans.h"
 #include "gaussmap/mapping/build.h"
+#include "io/files/temporary_directory.h"
 #include "parts.h"
 #include "street_points.h"
 #include "subcommands.h"
@@ -58,20 +59,6 @@ void fill(const Options& options, const std::filesystem::path& work, Table& tabl
   measureCommands(options, work, table);
 }
 
-/// A temporary directory, removed at the end.
-struct WorkDirectory {
-  std::filesystem::path path = std::filesystem::temp_directory_path() / "gaussmap_benchmark_XXXXXX";
-  WorkDirectory() {
-    std::string name = path;
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": cannot be made");
-    path = name;
-  }
-  ~WorkDirectory() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path, ignored);
-  }
-};
-
 void addGrowthPoints(CLI::App& command, const char* name, std::vector<std::size_t>& points) {
   points = {1000000, 5000000, 20000000, 80000000};
   command.add_option(name, points, "numbers of points of growth")->check(CLI::PositiveNumber)->capture_default_str();
@@ -100,10 +87,10 @@ void addTable(CLI::App& app) {
   command.add_option("--runs", given->runs, "the fastest counts")->check(CLI::Range(1, 1000))->capture_default_str();
   command.add_option("--json", given->json, "write the figures for machines");
   command.callback([given] {
-    const WorkDirectory work;
+    const test::TemporaryDirectory work;
     Table table;
-    fill(*given, work.path, table);
-    runOthers(*given, work.path, table);
+    fill(*given, work.path(), table);
+    runOthers(*given, work.path(), table);
     if (given->growth) measureGrowth(given->growth_points, table);
     if (!given->json.empty()) writeJson(given->json, table);
   });

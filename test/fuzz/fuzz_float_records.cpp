@@ -1,35 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Raw records of floats: the fields are guessed, given by the first line of the input, or fixed.
 #include <algorithm>
-#include <cstdlib>
 #include <stdexcept>
 #include <string>
 
-#include "fuzz_file.h"
+#include "fuzz_scan_file.h"
 #include "io/text/float_records.h"
 
 namespace {
 
 void readRecords(const std::filesystem::path& path, const std::string& fields) {
   using namespace gaussmap;
-  fuzz::refusesOrReads([&] {
-    const auto file = detail::openFloatRecords(path, {fields});
-    file->kind();
-    file->warnings();
-    const auto reader = file->open(0);
-    PointBlock<3> block;
-    std::size_t count = 0;
-    for (std::size_t first = 0; first < reader->size(); first += block.size) {
-      reader->read(first, block);
-      count += block.size;
-      if (block.size == 0) std::abort();
-    }
-    if (count != file->info(0).points) std::abort();
-    for (const std::string& name : reader->valueNames())
-      fuzz::refusesOrReads([&] {
-        if (reader->values(name).size() != reader->size()) std::abort();
-      });
-  });
+  fuzz::refusesOrReads([&] { fuzz::readScans(*detail::openFloatRecords(path, {fields})); });
 }
 
 }  // namespace

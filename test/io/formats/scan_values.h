@@ -13,8 +13,17 @@
 
 #include "io/formats/scan_file.h"
 
-// Compares a scan with a table of values that another program wrote.
+// Reads whole scans, and compares them with a table of values that another program wrote.
 namespace gaussmap::test {
+
+/// Reads everything that the first scan of a file has.
+inline void readAll(const detail::ScanFile& file) {
+  file.warnings();
+  const auto reader = file.open(0);
+  PointBlock<3> block;
+  for (std::size_t first = 0; reader->read(first, block), block.size > 0; first += block.size) continue;
+  for (const std::string& name : reader->valueNames()) EXPECT_EQ(reader->values(name).size(), reader->size());
+}
 
 /// Returns x, y and z of all points of a scan.
 inline std::vector<std::vector<double>> coordinatesOf(const ScanReader& reader) {

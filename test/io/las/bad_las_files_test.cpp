@@ -9,6 +9,7 @@
 
 #include "io/files/hostile_files.h"
 #include "io/files/temporary_directory.h"
+#include "io/formats/scan_values.h"
 #include "io/las/las_builder.h"
 #include "io/las/las_file.h"
 
@@ -19,17 +20,9 @@ using test::LasBytes;
 
 class BadLasFiles : public testing::Test {
  protected:
-  static void readAll(const std::filesystem::path& path) {
-    const auto file = detail::openLas(path);
-    file->warnings();
-    const auto reader = file->open(0);
-    PointBlock<3> block;
-    for (std::size_t first = 0; reader->read(first, block), block.size > 0; first += block.size) continue;
-    for (const std::string& name : reader->valueNames()) reader->values(name);
-  }
   void expectRefused(const std::string& bytes, const std::vector<std::string>& pieces) const {
     const std::filesystem::path path = directory_.write("cloud.las", bytes);
-    test::expectComplaint(test::complaintOf([&] { readAll(path); }), path, pieces);
+    test::expectComplaint(test::complaintOf([&] { test::readAll(*detail::openLas(path)); }), path, pieces);
   }
   template <typename T>
   static std::string changed(std::string bytes, std::size_t place, T value) {
@@ -151,7 +144,7 @@ TEST_F(BadLasFiles, DamagedFilesAreReadOrRefused) {
   Random random(3);
   for (int round = 0; round < 6000; ++round) {
     const std::string bytes = test::mutated(good[random.below(good.size())], random);
-    test::complaintOf([&] { readAll(directory_.write("cloud.las", bytes)); });
+    test::complaintOf([&] { test::readAll(*detail::openLas(directory_.write("cloud.las", bytes))); });
   }
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "io/files/temporary_directory.h"
-#include "io/las/expected_values.h"
+#include "io/formats/scan_values.h"
 #include "io/las/las_builder.h"
 
 namespace gaussmap {

@@ -8,6 +8,7 @@
 
 #include "io/files/hostile_files.h"
 #include "io/files/temporary_directory.h"
+#include "io/formats/scan_values.h"
 #include "io/laz/laz_samples.h"
 
 namespace gaussmap {
@@ -17,7 +18,7 @@ class BadLazFiles : public testing::Test {
  protected:
   void expectRefused(const std::string& bytes, const std::vector<std::string>& pieces) const {
     const std::filesystem::path path = directory_.write("cloud.laz", bytes);
-    test::expectComplaint(test::complaintOf([&] { test::readWholeLaz(path); }), path, pieces);
+    test::expectComplaint(test::complaintOf([&] { test::readAll(*detail::openLaz(path)); }), path, pieces);
   }
   template <typename T>
   void expectChangeRefused(std::size_t place, T value, const std::vector<std::string>& pieces) const {
@@ -113,7 +114,7 @@ TEST_F(BadLazFiles, AnyChangeIsReadOrRefused) {
                                  "laszip_format6", "laszip_format8_channels", "lazperf_format7_channels_variable"})
     good.push_back(test::lazSample(name));
   test::expectMutationsReadOrRefused(
-      good, [&](const std::string& bytes) { test::readWholeLaz(directory_.write("cloud.laz", bytes)); });
+      good, [&](const std::string& bytes) { test::readAll(*detail::openLaz(directory_.write("cloud.laz", bytes))); });
 }
 
 }  // namespace

@@ -65,14 +65,4 @@ std::string changedAt(const std::string& bytes, std::size_t place, T value) {
   return changed;
 }
 
-/// Reads everything that a file has.
-inline void readWholeLaz(const std::filesystem::path& path) {
-  const auto file = detail::openLaz(path);
-  file->warnings();
-  const auto reader = file->open(0);
-  PointBlock<3> block;
-  for (std::size_t first = 0; reader->read(first, block), block.size > 0; first += block.size) continue;
-  for (const std::string& name : reader->valueNames()) EXPECT_EQ(reader->values(name).size(), reader->size());
-}
-
 }  // namespace gaussmap::test

@@ -7,6 +7,7 @@
 
 #include "io/files/hostile_files.h"
 #include "io/files/temporary_directory.h"
+#include "io/formats/scan_values.h"
 #include "io/pcd/pcd_bytes.h"
 #include "io/ply/ply_cloud.h"
 
@@ -38,17 +39,9 @@ std::string binaryFile(const std::string& format) {
 
 class BadPlyClouds : public testing::Test {
  protected:
-  static void readAll(const std::filesystem::path& path) {
-    const auto file = detail::openPlyCloud(path);
-    file->warnings();
-    const auto reader = file->open(0);
-    PointBlock<3> block;
-    for (std::size_t first = 0; reader->read(first, block), block.size > 0; first += block.size) continue;
-    for (const std::string& name : reader->valueNames()) reader->values(name);
-  }
   void expectRefused(const std::string& bytes, const std::vector<std::string>& pieces) const {
     const std::filesystem::path path = directory_.write("cloud.ply", bytes);
-    test::expectComplaint(test::complaintOf([&] { readAll(path); }), path, pieces);
+    test::expectComplaint(test::complaintOf([&] { test::readAll(*detail::openPlyCloud(path)); }), path, pieces);
   }
   void expectChangeRefused(std::string text, const std::string& part, const std::string& replacement,
                            const std::vector<std::string>& pieces) const {
@@ -118,8 +111,9 @@ TEST_F(BadPlyClouds, AHugeHeaderTakesLittleTime) {
 }
 
 TEST_F(BadPlyClouds, DamagedFilesAreReadOrRefused) {
-  test::expectMutationsReadOrRefused({kAscii, binaryFile("binary_little_endian"), binaryFile("binary_big_endian")},
-                                     [&](const std::string& bytes) { readAll(directory_.write("cloud.ply", bytes)); });
+  test::expectMutationsReadOrRefused(
+      {kAscii, binaryFile("binary_little_endian"), binaryFile("binary_big_endian")},
+      [&](const std::string& bytes) { test::readAll(*detail::openPlyCloud(directory_.write("cloud.ply", bytes))); });
 }
 
 }  // namespace

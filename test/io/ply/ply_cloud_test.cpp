@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "io/files/temporary_directory.h"
-#include "io/las/expected_values.h"
+#include "io/formats/scan_values.h"
 #include "io/pcd/pcd_bytes.h"
 
 namespace gaussmap {
