@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/report.h"
+#include "io/files/text.h"
 
 namespace gaussmap::app {
 namespace {
@@ -16,9 +17,7 @@ const std::vector<std::string> kColourFields = {"rgb", "rgba", "r", "red"};
 
 bool hasValue(const std::vector<std::string>& values, const std::vector<std::string>& names, std::string& found) {
   for (const std::string& value : values) {
-    std::string lower = value;
-    for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    if (std::find(names.begin(), names.end(), lower) == names.end()) continue;
+    if (std::find(names.begin(), names.end(), detail::lowerCase(value)) == names.end()) continue;
     found = value;
     return true;
   }

@@ -7,6 +7,8 @@
 #include <set>
 #include <system_error>
 
+#include "io/files/text.h"
+
 namespace gaussmap::app {
 
 void checkScale(const std::string& option, int scale, int scales, const std::string& owner) {
@@ -16,9 +18,7 @@ void checkScale(const std::string& option, int scale, int scales, const std::str
 }
 
 std::string endingOf(const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  for (char& c : ending) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return ending;
+  return detail::lowerCase(path.extension().string());
 }
 
 void requireExtension(const std::filesystem::path& path, const std::string& extension) {

@@ -13,6 +13,11 @@ namespace gaussmap::detail {
 /// Returns true if a name ends like a recording: .mcap, .db3, .bag, and the first two with .zstd or .zst.
 bool hasRecordingName(const std::filesystem::path& path);
 
+/// Returns true for the text of a metadata.yaml of rosbag2.
+inline bool isRosbag2Metadata(std::string_view text) {
+  return text.find("rosbag2_bagfile_information") != std::string_view::npos;
+}
+
 /// The files of a recording in a directory.
 struct RecordingFolder {
   std::vector<std::filesystem::path> files;  ///< in the order of their numbers

@@ -7,6 +7,7 @@
 
 #include "gaussmap/core/error.h"
 #include "io/bags/recording.h"
+#include "io/files/natural_order.h"
 #include "io/files/text.h"
 
 namespace gaussmap::detail {
@@ -16,10 +17,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kMetadata = "metadata.yaml";
 constexpr std::size_t kLongestMetadata = std::size_t{16} << 20;
-
-bool endsWith(std::string_view text, std::string_view end) {
-  return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
-}
 
 /// Removes .zstd or .zst from a name.
 std::string withoutCompression(std::string name) {
@@ -52,10 +49,6 @@ std::string metadataOf(const fs::path& folder) {
   return text;
 }
 
-bool isRosbag2Metadata(std::string_view text) {
-  return text.find("rosbag2_bagfile_information") != std::string_view::npos;
-}
-
 /// Returns the names of recordings in the metadata, without their folders. This needs no parser of YAML: a name has no
 /// blanks or quotes, or it is not found and all files of the folder are used.
 std::set<std::string> namesIn(const std::string& metadata) {
@@ -70,30 +63,6 @@ std::set<std::string> namesIn(const std::string& metadata) {
     begin = end + 1;
   }
   return names;
-}
-
-/// Orders by the numbers in the names: bag_2 comes before bag_10.
-bool numbersBefore(const fs::path& left, const fs::path& right) {
-  const std::string a = left.filename().string(), b = right.filename().string();
-  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
-  std::size_t i = 0, j = 0;
-  while (i < a.size() && j < b.size()) {
-    if (!digit(a[i]) || !digit(b[j])) {
-      if (a[i] != b[j]) return a[i] < b[j];
-      ++i, ++j;
-      continue;
-    }
-    const auto number = [&](const std::string& text, std::size_t& place) {
-      while (place < text.size() && text[place] == '0') ++place;
-      const std::size_t begin = place;
-      while (place < text.size() && digit(text[place])) ++place;
-      return text.substr(begin, place - begin);
-    };
-    const std::string x = number(a, i), y = number(b, j);
-    if (x.size() != y.size()) return x.size() < y.size();
-    if (x != y) return x < y;
-  }
-  return a.size() - i != b.size() - j ? a.size() - i < b.size() - j : a < b;
 }
 
 /// `ros2 bag play` expands a compressed file beside it. Then both are there, and the expanded file is used.
@@ -165,7 +134,9 @@ RecordingFolder findRecordingFiles(const fs::path& folder) {
     if (hasRecordingName(file)) found.files.push_back(file);
   if (found.files.empty())
     throw FileError(folder, "the folder has no recording (.mcap, .db3, .bag, or the first two with .zstd)");
-  std::sort(found.files.begin(), found.files.end(), numbersBefore);
+  std::sort(found.files.begin(), found.files.end(), [](const fs::path& a, const fs::path& b) {
+    return naturalLess(a.filename().string(), b.filename().string());
+  });
   const std::string metadata = metadataOf(folder);
   const std::set<std::string> names = namesIn(metadata);
   dropTwins(found.files, found.warnings);

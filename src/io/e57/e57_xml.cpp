@@ -17,12 +17,6 @@
 namespace gaussmap::detail {
 namespace {
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kSpace = " \t\r\n";
-  const std::size_t first = text.find_first_not_of(kSpace);
-  return first == std::string_view::npos ? "" : text.substr(first, text.find_last_not_of(kSpace) + 1 - first);
-}
-
 /// Returns a text for messages and tables: without control characters, on one line, at most 80 bytes of whole UTF-8
 /// characters.
 std::string onOneLine(std::string_view text) {

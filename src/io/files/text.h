@@ -18,6 +18,15 @@ inline bool isBlank(char c) {
 
 inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
+/// Returns the text with ASCII capitals as small letters.
+GAUSSMAP_API std::string lowerCase(std::string_view text);
+/// Returns the text without blanks and line ends at both ends.
+std::string_view trimmed(std::string_view text);
+/// Returns true if the text ends with `end`.
+inline bool endsWith(std::string_view text, std::string_view end) {
+  return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
+}
+
 /// Removes the first line from `rest` and returns it without its line end.
 GAUSSMAP_API std::string_view takeLine(std::string_view& rest);
 

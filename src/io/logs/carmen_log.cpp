@@ -163,9 +163,8 @@ CarmenLog readCarmenLog(const std::filesystem::path& path) {
 }
 
 bool isCarmenLogName(const std::filesystem::path& name) {
-  std::string text = name.filename().string();
-  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  const std::filesystem::path lower = text, inner = lower.extension() == ".gz" ? lower.stem() : lower;
+  const std::filesystem::path lower = lowerCase(name.filename().string());
+  const std::filesystem::path inner = lower.extension() == ".gz" ? lower.stem() : lower;
   return inner.extension() == ".log" || inner.extension() == ".clf";
 }
 

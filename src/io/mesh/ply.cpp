@@ -39,7 +39,7 @@ class AsciiValues {
     return !__builtin_mul_overflow(element.count, 2 * element.minWords(), &bytes) &&
            bytes <= static_cast<std::size_t>(end_ - place_) + 1;
   }
-  std::size_t maxCount(PlyType) const { return static_cast<std::size_t>(end_ - place_) / 2 + 1; }
+  std::size_t maxCount(NumberType) const { return static_cast<std::size_t>(end_ - place_) / 2 + 1; }
 
   void beginElement(const PlyElement& element, std::size_t i) {
     while (place_ != end_ && (isBlank(*place_) || *place_ == '\n')) line_ += *place_++ == '\n';
@@ -56,22 +56,22 @@ class AsciiValues {
     if (place_ != end_) fail("more data than the header says");
   }
 
-  double number(PlyType type) {
+  double number(NumberType type) {
     double value = 0.0;
     const std::string_view word = takeWord();
     if (!parseNumber(word, value)) fail(quote(word) + " is not a number");
-    if (type == PlyType::Float32 && std::abs(value) <= double{std::numeric_limits<float>::max()})
+    if (type == NumberType::Float32 && std::abs(value) <= double{std::numeric_limits<float>::max()})
       return double{static_cast<float>(value)};  // the same value as in a binary file
     return value;
   }
-  std::int64_t whole(PlyType) {
+  std::int64_t whole(NumberType) {
     std::int64_t value = 0;
     const std::string_view word = takeWord();
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc() || end != word.data() + word.size()) fail(quote(word) + " is not a whole number");
     return value;
   }
-  void skip(PlyType, std::size_t count) {
+  void skip(NumberType, std::size_t count) {
     while (count-- > 0) takeWord();
   }
 
@@ -107,38 +107,38 @@ class BinaryValues {
     std::size_t bytes = 0;
     return !__builtin_mul_overflow(element.count, element.minSize(), &bytes) && bytes <= bytes_.size() - place_;
   }
-  std::size_t maxCount(PlyType type) const { return (bytes_.size() - place_) / sizeOf(type); }
+  std::size_t maxCount(NumberType type) const { return (bytes_.size() - place_) / sizeOf(type); }
 
   void beginElement(const PlyElement&, std::size_t) { element_ = place_; }
   void endElement(const PlyElement&) {}
   void finish() {}
 
-  double number(PlyType type) {
-    if (type == PlyType::Float64) return take<double>();
-    if (type == PlyType::Float32) return double{take<float>()};
+  double number(NumberType type) {
+    if (type == NumberType::Float64) return take<double>();
+    if (type == NumberType::Float32) return double{take<float>()};
     return static_cast<double>(whole(type));
   }
-  std::int64_t whole(PlyType type) {
+  std::int64_t whole(NumberType type) {
     switch (type) {
-      case PlyType::Int8:
+      case NumberType::Int8:
         return take<std::int8_t>();
-      case PlyType::UInt8:
+      case NumberType::UInt8:
         return take<std::uint8_t>();
-      case PlyType::Int16:
+      case NumberType::Int16:
         return take<std::int16_t>();
-      case PlyType::UInt16:
+      case NumberType::UInt16:
         return take<std::uint16_t>();
-      case PlyType::Int32:
+      case NumberType::Int32:
         return take<std::int32_t>();
-      case PlyType::UInt32:
+      case NumberType::UInt32:
         return take<std::uint32_t>();
-      case PlyType::Float32:
-      case PlyType::Float64:
+      case NumberType::Float32:
+      case NumberType::Float64:
         break;
     }
     fail("a whole number was expected");
   }
-  void skip(PlyType type, std::size_t count) {
+  void skip(NumberType type, std::size_t count) {
     if (count > maxCount(type)) fail("the file is cut off inside this element");
     place_ += count * sizeOf(type);
   }
@@ -274,7 +274,7 @@ class BodyParser {
     }
   }
 
-  std::uint32_t takeIndex(PlyType type, std::size_t face) {
+  std::uint32_t takeIndex(NumberType type, std::size_t face) {
     const std::int64_t index = values_.whole(type);
     if (index < 0 || static_cast<std::uint64_t>(index) >= vertices_)
       values_.fail("face " + std::to_string(face) + ": vertex " + std::to_string(index) + " of " +

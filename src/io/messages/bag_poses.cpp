@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/quantile.h"
 #include "io/messages/frame_names.h"
 
 namespace gaussmap::detail {
@@ -305,7 +306,7 @@ class PoseAssigner {
   PoseTimeLimits topicLimits() const {
     std::vector<nanoseconds> times;
     for (const BagScan& scan : content_.scans) times.push_back(scan.time);
-    const std::optional<nanoseconds> step = medianInterval(std::move(times));
+    const std::optional<nanoseconds> step = medianStep(std::move(times));
     const nanoseconds usual = step ? *step / 2 : kUsualLimit,
                       between = 4 * std::min<nanoseconds>(usual, std::chrono::hours(1));
     return gap_ ? PoseTimeLimits{std::max(between, 2 * *gap_), *gap_} : PoseTimeLimits{between, usual};

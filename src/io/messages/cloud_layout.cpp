@@ -8,11 +8,9 @@
 namespace gaussmap::detail {
 namespace {
 
-// Indexed by the datatype.
-constexpr std::array<std::size_t, 9> kSizes = {0, 1, 1, 2, 2, 4, 4, 4, 8};
-constexpr std::array<const char*, 9> kTypeNames = {"",      "int8",   "uint8",   "int16",  "uint16",
+// Indexed by the type.
+constexpr std::array<const char*, 8> kTypeNames = {"int8",  "uint8",  "int16",   "uint16",
                                                    "int32", "uint32", "float32", "float64"};
-constexpr std::uint8_t kFloat32 = 7, kFloat64 = 8;
 constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
 // The names that drivers give to the time of a point. The first one that exists becomes "time".
 constexpr std::array<std::string_view, 6> kTimes = {"time",       "t",           "timestamp",
@@ -24,10 +22,14 @@ std::string fieldName(const CloudField& field) {
   return "field '" + shown(field.name) + "'";
 }
 
+NumberType typeOf(const CloudField& field) {
+  return static_cast<NumberType>(field.datatype - 1);
+}
+
 void checkField(const CloudField& field, std::size_t point_step, const MessageOrigin& origin) {
-  if (field.datatype == 0 || field.datatype >= kSizes.size())
+  if (field.datatype == 0 || field.datatype > kTypeNames.size())
     origin.fail(fieldName(field) + " has the datatype " + std::to_string(field.datatype) + ", expected 1 to 8");
-  const std::size_t end = std::size_t{field.offset} + kSizes[field.datatype] * std::max<std::size_t>(field.count, 1);
+  const std::size_t end = std::size_t{field.offset} + sizeOf(typeOf(field)) * std::max<std::size_t>(field.count, 1);
   if (end > point_step)
     origin.fail(fieldName(field) + " ends at byte " + std::to_string(end) + " of a point, but point_step is " +
                 std::to_string(point_step));
@@ -45,12 +47,12 @@ CloudColumn axisOf(const CloudMessage& cloud, const char* name, const MessageOri
   if (!found)
     origin.fail("the cloud has no field '" + std::string(name) + "', its fields are " + shown(names) +
                 ": a map needs x, y and z [m]");
-  if (found->datatype != kFloat32 && found->datatype != kFloat64)
-    origin.fail(fieldName(*found) + " is " + kTypeNames[found->datatype] +
+  if (isWhole(typeOf(*found)))
+    origin.fail(fieldName(*found) + " is " + kTypeNames[found->datatype - 1u] +
                 ": integer coordinates have no known unit, expected float32 or float64");
   if (found->count > 1)
     origin.fail(fieldName(*found) + " has " + std::to_string(found->count) + " elements, expected 1");
-  return {name, found->offset, found->datatype};
+  return {name, found->offset, typeOf(*found)};
 }
 
 /// Sets width, row_step and columns.
@@ -91,7 +93,7 @@ void listValues(const CloudMessage& cloud, CloudLayout& layout) {
       std::string name = field.name == time ? "time" : std::string(field.name);
       if (count > 1) name += "[" + std::to_string(element) + "]";
       if (names.insert(name).second)
-        layout.values.push_back({name, field.offset + element * kSizes[field.datatype], field.datatype});
+        layout.values.push_back({name, field.offset + element * sizeOf(typeOf(field)), typeOf(field)});
     }
   }
 }

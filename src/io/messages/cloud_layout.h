@@ -12,9 +12,9 @@ namespace gaussmap::detail {
 
 /// Where the numbers of one element of a field are, for all points of a sensor_msgs/PointCloud2.
 struct CloudColumn {
-  std::string name;           ///< "x", "intensity"; "normal[0]" if the field has several elements
-  std::size_t offset = 0;     ///< from the start of a point [bytes]
-  std::uint8_t datatype = 7;  ///< as in CloudField
+  std::string name;        ///< "x", "intensity"; "normal[0]" if the field has several elements
+  std::size_t offset = 0;  ///< from the start of a point [bytes]
+  NumberType type = NumberType::Float32;
 };
 
 /// The layout of the data of a sensor_msgs/PointCloud2, checked against their size.

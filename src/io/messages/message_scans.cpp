@@ -15,37 +15,6 @@ namespace {
 
 constexpr double kNoPoint = std::numeric_limits<double>::quiet_NaN();
 
-template <typename T>
-void widenScalars(const char* place, std::size_t step, std::size_t count, bool swapped, double* values) {
-  if (swapped) {
-    for (std::size_t i = 0; i < count; ++i) values[i] = static_cast<double>(loadScalar<T>(place + i * step, true));
-  } else {
-    for (std::size_t i = 0; i < count; ++i) values[i] = static_cast<double>(loadScalar<T>(place + i * step, false));
-  }
-}
-
-void widenColumn(std::uint8_t datatype, const char* place, std::size_t step, std::size_t count, bool swapped,
-                 double* values) {
-  switch (datatype) {
-    case 1:
-      return widenScalars<std::int8_t>(place, step, count, swapped, values);
-    case 2:
-      return widenScalars<std::uint8_t>(place, step, count, swapped, values);
-    case 3:
-      return widenScalars<std::int16_t>(place, step, count, swapped, values);
-    case 4:
-      return widenScalars<std::uint16_t>(place, step, count, swapped, values);
-    case 5:
-      return widenScalars<std::int32_t>(place, step, count, swapped, values);
-    case 6:
-      return widenScalars<std::uint32_t>(place, step, count, swapped, values);
-    case 7:
-      return widenScalars<float>(place, step, count, swapped, values);
-    default:
-      return widenScalars<double>(place, step, count, swapped, values);
-  }
-}
-
 /// Base of the readers: owns the bytes of the message.
 class MessageReader : public ScanReader {
  public:
@@ -93,12 +62,12 @@ class CloudReader : public MessageReader {
     if (count == 0) return;
     const std::size_t step = layout_.point_step;
     if (layout_.row_step == layout_.width * step)
-      return widenColumn(column.datatype, data_ + first * step + column.offset, step, count, layout_.swapped, values);
+      return loadNumbers(column.type, layout_.swapped, data_ + first * step + column.offset, step, count, values);
     while (count > 0) {
       const std::size_t row = first / layout_.width, place = first % layout_.width;
       const std::size_t part = std::min(count, layout_.width - place);
-      widenColumn(column.datatype, data_ + row * layout_.row_step + place * step + column.offset, step, part,
-                  layout_.swapped, values);
+      loadNumbers(column.type, layout_.swapped, data_ + row * layout_.row_step + place * step + column.offset, step,
+                  part, values);
       first += part;
       values += part;
       count -= part;

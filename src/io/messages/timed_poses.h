@@ -58,7 +58,4 @@ class TimedPoses {
   std::chrono::nanoseconds step_back_{0};
 };
 
-/// Returns the median of the steps between different times, or std::nullopt if there are not two different times.
-std::optional<std::chrono::nanoseconds> medianInterval(std::vector<std::chrono::nanoseconds> times);
-
 }  // namespace gaussmap::detail

@@ -4,13 +4,13 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <string>
 #include <string_view>
 
 #include "gaussmap/core/error.h"
 #include "gaussmap/version.h"
+#include "io/files/binary_numbers.h"
 #include "io/formats/message_file.h"
 
 namespace gaussmap::detail {
@@ -31,20 +31,6 @@ struct MessageOrigin {
   [[noreturn]] void fail(const std::string& what) const;
 };
 
-/// Returns the bytes at `place` as a T, in the other byte order if `swapped`.
-template <typename T>
-T loadScalar(const char* place, bool swapped) {
-  T value;
-  if (!swapped) {
-    std::memcpy(&value, place, sizeof(T));
-    return value;
-  }
-  char bytes[sizeof(T)];
-  for (std::size_t i = 0; i < sizeof(T); ++i) bytes[i] = place[sizeof(T) - 1 - i];
-  std::memcpy(&value, bytes, sizeof(T));
-  return value;
-}
-
 /// Returns true if numbers in this byte order differ from those of this computer.
 inline bool isSwapped(bool big_endian) {
   return big_endian != (__BYTE_ORDER__ == __ORDER_BIG_ENDIAN__);
@@ -56,7 +42,7 @@ class FloatsView {
   FloatsView() = default;
   FloatsView(const char* first, std::size_t size, bool swapped) : first_(first), size_(size), swapped_(swapped) {}
   std::size_t size() const { return size_; }
-  float operator[](std::size_t i) const { return loadScalar<float>(first_ + i * sizeof(float), swapped_); }
+  float operator[](std::size_t i) const { return loadNumber<float>(first_ + i * sizeof(float), swapped_); }
 
  private:
   const char* first_ = nullptr;
@@ -79,7 +65,7 @@ class WireReader {
 
   template <typename T>
   T number(const char* what) {
-    return loadScalar<T>(take(sizeof(T), sizeof(T), what), swapped_);
+    return loadNumber<T>(take(sizeof(T), sizeof(T), what), swapped_);
   }
   bool boolean(const char* what) { return number<std::uint8_t>(what) != 0; }
   /// Returns a string without its final NUL.

@@ -10,6 +10,7 @@
 #include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
 #include "gaussmap/io/pcd/pcd_writer.h"
+#include "io/files/text.h"
 #include "io/pcd/wide_records.h"
 
 namespace gaussmap {
@@ -135,8 +136,7 @@ bool isMap(const std::filesystem::path& path) {
 GaussianMap<3> loadAny(const std::filesystem::path& path, MapMetadata* metadata) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) throw FileError(path, "does not exist");
-  std::string ending = path.extension().string();
-  for (char& c : ending) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  const std::string ending = detail::lowerCase(path.extension().string());
   if (!isGmap(path) && (ending != ".gmap" || isMap(path))) return loadPcd(path);
   GaussianMap<3> map = load(path);
   if (metadata != nullptr) *metadata = loadMetadata(path);

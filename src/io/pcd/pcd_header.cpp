@@ -22,12 +22,6 @@ char upper(char c) {
   return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
 }
 
-std::string lowered(std::string_view word) {
-  std::string lower(word);
-  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return lower;
-}
-
 struct Line {
   std::size_t number = 0;  // 0: the keyword does not occur
   std::vector<std::string_view> words;
@@ -201,7 +195,7 @@ class HeaderParser {
     for (const char* const name : {"x", "y", "z"})
       if (fieldsNamed(name) > 0) return;
     for (PcdField& field : header_.fields)
-      if (field.name == "X" || field.name == "Y" || field.name == "Z") field.name = lowered(field.name);
+      if (field.name == "X" || field.name == "Y" || field.name == "Z") field.name = lowerCase(field.name);
   }
 
   void requireCoordinates() const {
@@ -260,7 +254,7 @@ class HeaderParser {
 
   void readEncoding() {
     const Line& line = lines_[kData];
-    const std::string word = line.words.size() == 1 ? lowered(line.words.front()) : "";
+    const std::string word = line.words.size() == 1 ? lowerCase(line.words.front()) : "";
     if (word == "ascii") {
       header_.encoding = PcdEncoding::Ascii;
     } else if (word == "binary") {

@@ -65,7 +65,7 @@ class PlyAsciiParser {
     for (std::size_t property = 0; property < element.properties.size(); ++property) {
       beginWord(property, element);
       if (wanted < properties.size() && properties[wanted] == property) {
-        columns[wanted++][i] = number(element.properties[property].type == PlyType::Float32);
+        columns[wanted++][i] = number(element.properties[property].type == NumberType::Float32);
       } else if (element.properties[property].is_list) {
         for (std::uint64_t entries = length(); entries > 0; --entries) {
           beginWord(property, element);

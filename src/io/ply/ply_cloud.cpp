@@ -81,7 +81,7 @@ class PlyScanReader : public ScanReader {
       std::vector<std::vector<double>> columns = columnsOf(ply_->vertices, value.properties);
       requireWhole();
       if (columns.size() == 1) return std::move(columns.front());
-      const PlyType type = ply_->vertices.vertex().properties[value.properties.front()].type;
+      const NumberType type = ply_->vertices.vertex().properties[value.properties.front()].type;
       return packColours({std::move(columns[0]), std::move(columns[1]), std::move(columns[2])}, !isWhole(type));
     }
     return ScanReader::values(name);

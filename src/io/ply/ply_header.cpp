@@ -16,22 +16,22 @@ namespace {
 // No header needs this much. The limit avoids a search through a large file that is not a PLY file.
 constexpr std::size_t kLongestHeader = std::size_t{1} << 20;
 
-constexpr std::array<std::pair<std::string_view, PlyType>, 16> kTypes = {{{"char", PlyType::Int8},
-                                                                          {"int8", PlyType::Int8},
-                                                                          {"uchar", PlyType::UInt8},
-                                                                          {"uint8", PlyType::UInt8},
-                                                                          {"short", PlyType::Int16},
-                                                                          {"int16", PlyType::Int16},
-                                                                          {"ushort", PlyType::UInt16},
-                                                                          {"uint16", PlyType::UInt16},
-                                                                          {"int", PlyType::Int32},
-                                                                          {"int32", PlyType::Int32},
-                                                                          {"uint", PlyType::UInt32},
-                                                                          {"uint32", PlyType::UInt32},
-                                                                          {"float", PlyType::Float32},
-                                                                          {"float32", PlyType::Float32},
-                                                                          {"double", PlyType::Float64},
-                                                                          {"float64", PlyType::Float64}}};
+constexpr std::array<std::pair<std::string_view, NumberType>, 16> kTypes = {{{"char", NumberType::Int8},
+                                                                             {"int8", NumberType::Int8},
+                                                                             {"uchar", NumberType::UInt8},
+                                                                             {"uint8", NumberType::UInt8},
+                                                                             {"short", NumberType::Int16},
+                                                                             {"int16", NumberType::Int16},
+                                                                             {"ushort", NumberType::UInt16},
+                                                                             {"uint16", NumberType::UInt16},
+                                                                             {"int", NumberType::Int32},
+                                                                             {"int32", NumberType::Int32},
+                                                                             {"uint", NumberType::UInt32},
+                                                                             {"uint32", NumberType::UInt32},
+                                                                             {"float", NumberType::Float32},
+                                                                             {"float32", NumberType::Float32},
+                                                                             {"double", NumberType::Float64},
+                                                                             {"float64", NumberType::Float64}}};
 
 class HeaderParser {
  public:
@@ -117,7 +117,7 @@ class HeaderParser {
     header_.elements.back().properties.push_back(std::move(property));
   }
 
-  PlyType type(std::string_view word) const {
+  NumberType type(std::string_view word) const {
     for (const auto& [name, type] : kTypes)
       if (name == word) return type;
     fail(quote(word) + " is not a type of a property (uchar, int, float, double ...)");
@@ -133,11 +133,6 @@ class HeaderParser {
 };
 
 }  // namespace
-
-std::size_t sizeOf(PlyType type) {
-  constexpr std::array<std::size_t, 8> kSizes = {1, 1, 2, 2, 4, 4, 4, 8};
-  return kSizes[static_cast<std::size_t>(type)];
-}
 
 std::size_t PlyElement::minSize() const {
   std::size_t size = 0;

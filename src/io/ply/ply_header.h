@@ -2,28 +2,21 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "gaussmap/version.h"
+#include "io/files/binary_numbers.h"
 
 namespace gaussmap::detail {
 
-enum class PlyType : std::uint8_t { Int8, UInt8, Int16, UInt16, Int32, UInt32, Float32, Float64 };
-
-std::size_t sizeOf(PlyType type);  ///< [bytes]
-inline bool isWhole(PlyType type) {
-  return type < PlyType::Float32;
-}
-
 struct PlyProperty {
   std::string name;
-  PlyType type = PlyType::Float32;  ///< type of the value, or of each entry of a list
+  NumberType type = NumberType::Float32;  ///< type of the value, or of each entry of a list
   bool is_list = false;
-  PlyType count_type = PlyType::UInt8;  ///< type of a list's length
+  NumberType count_type = NumberType::UInt8;  ///< type of a list's length
 };
 
 struct PlyElement {

@@ -16,18 +16,12 @@ namespace {
 
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
-std::string lowerOf(std::string_view name) {
-  std::string lower(name);
-  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return lower;
-}
-
 /// Returns the name of a value for the name of its property.
 std::string valueNameOf(std::string_view property) {
   constexpr std::string_view kScalar = "scalar_";
   if (property.size() > kScalar.size() && property.substr(0, kScalar.size()) == kScalar)
     property.remove_prefix(kScalar.size());
-  std::string lower = lowerOf(property);
+  std::string lower = lowerCase(property);
   for (const char* const known : {"intensity", "ring", "label", "time", "classification"})
     if (lower == known) return lower;
   if (lower == "gpstime" || lower == "gps_time") return "time";

@@ -2,12 +2,11 @@
 #include "io/ply/ply_vertices.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
-#include <cstring>
 #include <utility>
 
 #include "gaussmap/core/error.h"
+#include "io/files/binary_numbers.h"
 #include "io/files/text.h"
 #include "io/ply/ply_ascii.h"
 
@@ -15,52 +14,6 @@ static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "only the values of big
 
 namespace gaussmap::detail {
 namespace {
-
-/// Returns the number of type T at `place`, whose bytes are in reverse order if kIsBig.
-template <typename T, bool kIsBig>
-T plyNumber(const char* place) {
-  std::array<char, sizeof(T)> raw;
-  std::memcpy(raw.data(), place, sizeof(T));
-  if constexpr (kIsBig) std::reverse(raw.begin(), raw.end());
-  T value;
-  std::memcpy(&value, raw.data(), sizeof(T));
-  return value;
-}
-
-/// Calls body with a value of the C++ type.
-template <typename Body>
-void withPlyType(PlyType type, const Body& body) {
-  switch (type) {
-    case PlyType::Int8:
-      return body(std::int8_t{});
-    case PlyType::UInt8:
-      return body(std::uint8_t{});
-    case PlyType::Int16:
-      return body(std::int16_t{});
-    case PlyType::UInt16:
-      return body(std::uint16_t{});
-    case PlyType::Int32:
-      return body(std::int32_t{});
-    case PlyType::UInt32:
-      return body(std::uint32_t{});
-    case PlyType::Float32:
-      return body(float{});
-    case PlyType::Float64:
-      return body(double{});
-  }
-}
-
-/// Converts numbers that are `step` bytes apart.
-void widenPly(PlyType type, bool is_big, const char* first, std::size_t step, std::size_t count, double* values) {
-  withPlyType(type, [&](auto zero) {
-    using T = decltype(zero);
-    if (is_big) {
-      for (std::size_t i = 0; i < count; ++i) values[i] = static_cast<double>(plyNumber<T, true>(first + i * step));
-    } else {
-      for (std::size_t i = 0; i < count; ++i) values[i] = static_cast<double>(plyNumber<T, false>(first + i * step));
-    }
-  });
-}
 
 bool hasLists(const PlyElement& element) {
   return std::any_of(element.properties.begin(), element.properties.end(),
@@ -91,7 +44,7 @@ class PlyWalker {
     const char* const value = take(element, i, sizeOf(property.is_list ? property.count_type : property.type), 1);
     if (!property.is_list) return;
     double length = 0.0;
-    widenPly(property.count_type, is_big_, value, 0, 1, &length);
+    loadNumbers(property.count_type, is_big_, value, 0, 1, &length);
     if (length < 0.0) fail(element, i, "a list of " + std::to_string(static_cast<std::int64_t>(length)) + " entries");
     take(element, i, sizeOf(property.type), static_cast<std::size_t>(length));
   }
@@ -99,7 +52,7 @@ class PlyWalker {
   /// Takes a number, which is not a list.
   double number(const PlyElement& element, std::size_t i, const PlyProperty& property) {
     double value = 0.0;
-    widenPly(property.type, is_big_, take(element, i, sizeOf(property.type), 1), 0, 1, &value);
+    loadNumbers(property.type, is_big_, take(element, i, sizeOf(property.type), 1), 0, 1, &value);
     return value;
   }
 
@@ -180,8 +133,8 @@ std::size_t PlyVertices::bytesBehind() const {
 }
 
 void PlyVertices::decode(std::size_t property, std::size_t first, std::size_t count, double* values) const {
-  widenPly(vertex().properties[property].type, header_.encoding == PlyEncoding::BigEndian,
-           bytes_.data() + first_ + first * record_size_ + places_[property], record_size_, count, values);
+  loadNumbers(vertex().properties[property].type, header_.encoding == PlyEncoding::BigEndian,
+              bytes_.data() + first_ + first * record_size_ + places_[property], record_size_, count, values);
 }
 
 std::vector<std::vector<double>> PlyVertices::columns(const std::vector<std::size_t>& properties) const {

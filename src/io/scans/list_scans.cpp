@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "gaussmap/io/scans/file_scans.h"
+#include "io/files/natural_order.h"
 #include "io/formats/message_file.h"
 #include "io/scans/list_scans.h"
 #include "io/scans/scan_names.h"

@@ -28,7 +28,6 @@ namespace gaussmap::detail {
 namespace {
 
 constexpr std::size_t kStart = 4096;  // bytes that tell the kind of a file
-constexpr std::string_view kRosbag2Metadata = "rosbag2_bagfile_information";
 
 BagPoses bagPosesOf(const OpenOptions& options) {
   if (!options.needs_poses) return BagPoses::None;
@@ -110,7 +109,7 @@ std::shared_ptr<const ScanFile> openByName(const std::filesystem::path& path, st
   if (isMapFile(start)) throw FileError(path, "is a map, not a file of scans; gaussmap merge combines maps");
   if (const std::string kind = kindOfStart(start); !kind.empty())
     throw FileError(path, "is " + kind + ", not a file of scans");
-  if (start.substr(0, kRosbag2Metadata.size()) == kRosbag2Metadata)
+  if (isRosbag2Metadata(start))
     throw FileError(path, "describes a recording of rosbag2; give the folder with the recording instead");
   const bool is_utf16 = start[0] == '\xFF' || start[0] == '\xFE';
   if (looksLikeText(start) || is_utf16 || isTextName(path) || extension == ".xyz" || extension == ".pts" ||

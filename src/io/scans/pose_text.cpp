@@ -20,12 +20,6 @@ double rotationError(const MatrixRows& matrix) {
   return (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
 }
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && isBlank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && isBlank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
 bool isNumber(std::string_view word) {
   double value = 0.0;
   return parseNumber(word, value);

@@ -9,6 +9,9 @@
 #include <sstream>
 #include <utility>
 
+#include "core/interpolate_pose.h"
+#include "core/quantile.h"
+
 namespace gaussmap::detail {
 namespace {
 
@@ -22,18 +25,6 @@ Instant between(Instant a, Instant b) {
   return a < b ? b - a : a - b;
 }
 
-/// Returns the median of the differences of sorted times; nullopt if all times are equal.
-std::optional<Instant> medianStep(std::vector<Instant> times) {
-  std::sort(times.begin(), times.end());
-  std::vector<Instant> steps;
-  for (std::size_t i = 1; i < times.size(); ++i)
-    if (times[i] != times[i - 1]) steps.push_back(times[i] - times[i - 1]);
-  if (steps.empty()) return std::nullopt;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
-}
-
 std::string shortTime(Instant time) {
   const double seconds = secondsOf(time);
   std::ostringstream text;
@@ -45,11 +36,6 @@ std::string shortTime(Instant time) {
   else
     text << seconds << " s";
   return text.str();
-}
-
-Pose interpolate(const Pose& a, const Pose& b, double share) {
-  const Eigen::Quaterniond qa(a.rotation), qb(b.rotation);
-  return normalised({a.translation + share * (b.translation - a.translation), Pose::Rotation(qa.slerp(share, qb))});
 }
 
 /// The largest distance between the nearest and the interpolated poses.

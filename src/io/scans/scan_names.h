@@ -32,8 +32,4 @@ GAUSSMAP_API std::vector<std::string> scanNames(const std::vector<std::filesyste
 /// Returns the last folder of a path and the file name, as in 000000/cloud.pcd.
 std::string folderAndFileName(const std::filesystem::path& path);
 
-/// Returns true if a comes before b in natural order: numbers in names are compared by value, for example
-/// scan2 before scan10.
-bool naturalLess(const std::string& a, const std::string& b);
-
 }  // namespace gaussmap::detail

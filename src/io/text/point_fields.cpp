@@ -88,21 +88,9 @@ constexpr Unit kLengths[] = {{"m", 1},      {"meter", 1}, {"meters", 1}, {"metre
                              {"metres", 1}, {"cm", 100},  {"mm", 1000},  {"km", 1e-3}};
 constexpr Unit kTimes[] = {{"s", 1}, {"sec", 1}, {"ms", 1e3}, {"us", 1e6}, {"\xC2\xB5s", 1e6}, {"ns", 1e9}};
 
-constexpr std::pair<std::string_view, ScalarType> kTypes[] = {
-    {"f32", ScalarType::F32}, {"f64", ScalarType::F64}, {"u8", ScalarType::U8},   {"u16", ScalarType::U16},
-    {"u32", ScalarType::U32}, {"i8", ScalarType::I8},   {"i16", ScalarType::I16}, {"i32", ScalarType::I32}};
-
-std::string lowerCase(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return lower;
-}
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && isBlank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && isBlank(text.back())) text.remove_suffix(1);
-  return text;
-}
+constexpr std::pair<std::string_view, NumberType> kTypes[] = {
+    {"f32", NumberType::Float32}, {"f64", NumberType::Float64}, {"u8", NumberType::UInt8},  {"u16", NumberType::UInt16},
+    {"u32", NumberType::UInt32},  {"i8", NumberType::Int8},     {"i16", NumberType::Int16}, {"i32", NumberType::Int32}};
 
 /// Returns the place of a name in kAliases, or kAliasCount.
 std::size_t aliasOf(std::string_view lower) {
@@ -194,27 +182,12 @@ PointField parseField(std::string_view item, bool with_types) {
     }
     if (rest.empty()) break;
   }
-  if (isCoordinate(field.name) && !isFloat(field.type) && !field.has_unit)
+  if (isCoordinate(field.name) && isWhole(field.type) && !field.has_unit)
     failInList(item, "is a whole number without a unit: write for example " + field.name + ":i32:mm");
   return field;
 }
 
 }  // namespace
-
-std::size_t sizeOf(ScalarType type) {
-  switch (type) {
-    case ScalarType::F64:
-      return 8;
-    case ScalarType::U8:
-    case ScalarType::I8:
-      return 1;
-    case ScalarType::U16:
-    case ScalarType::I16:
-      return 2;
-    default:
-      return 4;
-  }
-}
 
 std::size_t indexOf(const std::vector<PointField>& fields, std::string_view name) {
   const auto found =

@@ -6,25 +6,17 @@
 #include <string_view>
 #include <vector>
 
+#include "io/files/binary_numbers.h"
+
 // Names, units and types of the columns of text files and of the fields of raw records.
 namespace gaussmap::detail {
-
-/// The type of a number in a raw record, little-endian.
-enum class ScalarType { F32, F64, U8, U16, U32, I8, I16, I32 };
-
-/// Returns the number of bytes of a type.
-std::size_t sizeOf(ScalarType type);
-/// Returns true for F32 and F64.
-inline bool isFloat(ScalarType type) {
-  return type == ScalarType::F32 || type == ScalarType::F64;
-}
 
 /// What one column of a text file or one field of a raw record holds.
 struct PointField {
   std::string name;       ///< name in the interface ScanReader, "x", "y" or "z"; empty: the field is skipped
   double divisor = 1.0;   ///< metres or seconds = number / divisor
   bool has_unit = false;  ///< the unit was given
-  ScalarType type = ScalarType::F32;  ///< in raw records only
+  NumberType type = NumberType::Float32;  ///< in raw records only
 };
 
 /// The names of the three channels of a colour, from which the value "rgb" is made.

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <cstring>
 #include <limits>
 #include <utility>
 
 #include "gaussmap/core/error.h"
+#include "io/files/text.h"
 #include "io/formats/kind_of_start.h"
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "records are read as they are in memory");
@@ -17,16 +17,7 @@ static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "records are read as th
 namespace gaussmap::detail {
 namespace {
 
-constexpr std::string_view kTypeNames[] = {"f32", "f64", "u8", "u16", "u32", "i8", "i16", "i32"};
-
-template <typename Value>
-void widenRecords(const char* place, std::size_t step, std::size_t count, double* values) {
-  Value value;
-  for (std::size_t i = 0; i < count; ++i) {
-    std::memcpy(&value, place + i * step, sizeof value);
-    values[i] = static_cast<double>(value);
-  }
-}
+constexpr std::string_view kTypeNames[] = {"i8", "u8", "i16", "u16", "i32", "u32", "f32", "f64"};
 
 /// The fields of the records of a dataset, all of them f32.
 struct KnownRecord {
@@ -102,10 +93,6 @@ std::string misfit(const KnownRecord& known, std::string_view bytes) {
   return "";
 }
 
-bool endsWith(std::string_view text, std::string_view end) {
-  return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
-}
-
 }  // namespace
 
 RecordLayout::RecordLayout(std::vector<PointField> record_fields) : fields(std::move(record_fields)) {
@@ -128,29 +115,10 @@ std::string describe(const RecordLayout& layout) {
 
 void readField(const RecordLayout& layout, std::size_t field, std::string_view bytes, std::size_t first,
                std::size_t count, double* values) {
-  const char* const place = bytes.data() + first * layout.size + layout.offsets[field];
-  const ScalarType type = layout.fields[field].type;
+  NumberType type = layout.fields[field].type;
   // A colour of PCL in a float: the bits are the number.
-  if (layout.fields[field].name == "rgb" && type == ScalarType::F32)
-    return widenRecords<std::uint32_t>(place, layout.size, count, values);
-  switch (type) {
-    case ScalarType::F32:
-      return widenRecords<float>(place, layout.size, count, values);
-    case ScalarType::F64:
-      return widenRecords<double>(place, layout.size, count, values);
-    case ScalarType::U8:
-      return widenRecords<std::uint8_t>(place, layout.size, count, values);
-    case ScalarType::U16:
-      return widenRecords<std::uint16_t>(place, layout.size, count, values);
-    case ScalarType::U32:
-      return widenRecords<std::uint32_t>(place, layout.size, count, values);
-    case ScalarType::I8:
-      return widenRecords<std::int8_t>(place, layout.size, count, values);
-    case ScalarType::I16:
-      return widenRecords<std::int16_t>(place, layout.size, count, values);
-    case ScalarType::I32:
-      return widenRecords<std::int32_t>(place, layout.size, count, values);
-  }
+  if (layout.fields[field].name == "rgb" && type == NumberType::Float32) type = NumberType::UInt32;
+  loadNumbers(type, false, bytes.data() + first * layout.size + layout.offsets[field], layout.size, count, values);
 }
 
 std::vector<ColumnSample> sampleRecords(const RecordLayout& layout, std::string_view bytes) {

@@ -31,8 +31,7 @@ std::string_view decimalComma(const std::vector<std::string_view>& words, char s
 bool namesDegrees(const std::vector<std::string_view>& words) {
   bool has_latitude = false, has_longitude = false;
   for (const std::string_view word : words) {
-    std::string lower(word);
-    for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    const std::string lower = lowerCase(word);
     has_latitude = has_latitude || lower == "lat" || lower == "latitude";
     has_longitude = has_longitude || lower == "lon" || lower == "lng" || lower == "long" || lower == "longitude";
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "io/files/natural_order.h"
 #include "io/files/temporary_directory.h"
 #include "io/scans/scan_names.h"
 
