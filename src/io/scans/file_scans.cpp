@@ -18,14 +18,14 @@ namespace {
 class SampledReader : public ScanReader {
  public:
   SampledReader(std::shared_ptr<const ScanFile> file, std::shared_ptr<const ScanReader> reader, std::size_t scan,
-                std::shared_ptr<CoordinateSamples> samples, std::shared_ptr<RecentFiles> recent)
+                std::shared_ptr<CoordinateSamples> samples, std::shared_ptr<ScanFiles> files)
       : file_(std::move(file)),
         reader_(std::move(reader)),
         scan_(scan),
         samples_(std::move(samples)),
-        recent_(std::move(recent)) {}
+        files_(std::move(files)) {}
   ~SampledReader() override {
-    if (file_) recent_->add(file_, reader_->size());
+    if (file_) files_->noteRead(file_, reader_->size());
   }
   SampledReader(const SampledReader&) = delete;
   SampledReader& operator=(const SampledReader&) = delete;
@@ -45,7 +45,7 @@ class SampledReader : public ScanReader {
   std::shared_ptr<const ScanReader> reader_;
   std::size_t scan_;
   std::shared_ptr<CoordinateSamples> samples_;
-  std::shared_ptr<RecentFiles> recent_;
+  std::shared_ptr<ScanFiles> files_;
 };
 
 }  // namespace
@@ -58,8 +58,7 @@ FileScans::FileScans(std::vector<FileScan> scans, ScanFrame frame, std::shared_p
       files_(std::move(files)),
       frame_(frame),
       samples_(std::make_shared<CoordinateSamples>(scans_.size())),
-      kept_(std::make_shared<KeptReaders>()),
-      recent_(std::make_shared<RecentFiles>()) {
+      kept_(std::make_shared<KeptReaders>()) {
   file_of_.reserve(scans_.size());
   for (const FileScan& scan : scans_) {
     const ScanFiles::Added added = files_->add(scan.path);
@@ -87,7 +86,7 @@ std::unique_ptr<ScanReader> FileScans::open(std::size_t index) const {
     reader = file->open(scans_[index].index);
     if (const std::size_t bytes = file->memoryOf(scans_[index].index); bytes > 0) kept_->keep(index, reader, bytes);
   }
-  return std::make_unique<SampledReader>(std::move(file), std::move(reader), index, samples_, recent_);
+  return std::make_unique<SampledReader>(std::move(file), std::move(reader), index, samples_, files_);
 }
 
 std::string FileScans::kind(std::size_t index) const {

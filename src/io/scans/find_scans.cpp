@@ -83,7 +83,6 @@ void addScansOf(const std::filesystem::path& path, ListedScans& listed) {
   }
   if (const std::string frame = file->mapFrame(); !frame.empty()) checkMapFrame(path, frame, listed);
   for (const std::string& warning : file->warnings()) listed.warnings.push_back(path.string() + ": " + warning);
-  file->releasePages();
 }
 
 /// Returns true if the points of scans with the same pose show that the sensor stood still.

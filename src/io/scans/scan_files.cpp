@@ -14,7 +14,9 @@ constexpr std::size_t kMaxOpen = 1024;
 ScanFiles::Added ScanFiles::add(const std::filesystem::path& path) {
   if (const auto known = numbers_.find(path); known != numbers_.end()) return {known->second, file(known->second)};
   Added added{paths_.size(), openScanFile(path, options_)};
-  added.file->releasePages();  // opening a text reads the whole file
+  std::size_t points = 0;
+  for (std::size_t i = 0; i < added.file->size(); ++i) points += added.file->info(i).points;
+  recent_.add(added.file, points);  // opening a text reads the whole file
   numbers_.emplace(path, added.number);
   paths_.push_back(path);
   if (open_.size() < kMaxOpen) open_.push_back(added.file);

@@ -16,6 +16,19 @@
 
 namespace gaussmap::detail {
 
+/// The files that were read last. Their pages stay in memory, because they may be read again, as after the check of
+/// poses; those of older files are released. So memory does not grow with the number of files. Thread-safe.
+class RecentFiles {
+ public:
+  /// Notes that a scan with this many points was read.
+  void add(const std::shared_ptr<const ScanFile>& file, std::size_t points);
+
+ private:
+  std::mutex mutex_;
+  std::size_t points_ = 0;
+  std::deque<std::pair<std::shared_ptr<const ScanFile>, std::size_t>> files_;
+};
+
 /// The files of a list of scans. The number of files that stay open is limited; the others are opened again when they
 /// are needed.
 class ScanFiles {
@@ -28,6 +41,8 @@ class ScanFiles {
   };
   /// Opens a file, if it is not open yet. Throws FileError. Not thread-safe.
   Added add(const std::filesystem::path& path);
+  /// Notes that a scan with this many points was read. See RecentFiles.
+  void noteRead(const std::shared_ptr<const ScanFile>& file, std::size_t points) { recent_.add(file, points); }
   /// Returns a file by its number. Thread-safe. Throws FileError if the file has to be opened again and is gone.
   std::shared_ptr<const ScanFile> file(std::size_t number) const;
 
@@ -36,19 +51,7 @@ class ScanFiles {
   std::vector<std::filesystem::path> paths_;
   std::vector<std::shared_ptr<const ScanFile>> open_;  // the first files
   std::map<std::filesystem::path, std::size_t> numbers_;
-};
-
-/// The files that were read last. Their pages stay in memory, because they may be read again, as after the check of
-/// poses; those of older files are released. Thread-safe.
-class RecentFiles {
- public:
-  /// Notes that a scan with this many points was read.
-  void add(const std::shared_ptr<const ScanFile>& file, std::size_t points);
-
- private:
-  std::mutex mutex_;
-  std::size_t points_ = 0;
-  std::deque<std::pair<std::shared_ptr<const ScanFile>, std::size_t>> files_;
+  RecentFiles recent_;
 };
 
 /// Readers that have their points in memory, until they are taken. Thread-safe.

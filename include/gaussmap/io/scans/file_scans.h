@@ -21,7 +21,6 @@ struct FoundScans;
 namespace detail {
 class CoordinateSamples;
 class KeptReaders;
-class RecentFiles;
 class ScanFiles;
 }  // namespace detail
 
@@ -107,7 +106,6 @@ class GAUSSMAP_API FileScans : public Scans {
   ScanFrame frame_;
   std::shared_ptr<detail::CoordinateSamples> samples_;  // of the points that were read
   std::shared_ptr<detail::KeptReaders> kept_;
-  std::shared_ptr<detail::RecentFiles> recent_;
 };
 
 /// Returns the files of a list of inputs, in the order of the inputs.
