@@ -134,6 +134,33 @@ TEST_F(FormatsApp, KeepTheCoordinateReferenceSystemOfTheFiles) {
   EXPECT_EQ(systemOf(own("moved.gmap")), "");
 }
 
+TEST_F(FormatsApp, RefuseToChangePosesThatTheyDoNotHave) {
+  const std::string ply = formatsFile("same_scans/ply/000000.ply"), las = formatsFile("same_scans/las/000000.las");
+  for (const char* const convention : {"inverse", "w-last", "camera"})
+    expectDataError("has no pose, so --pose-convention has nothing to convert",
+                    {"scans", ply, "--pose-convention", convention});
+  expectDataError("the order of its quaternions is known",
+                  {"scans", formatsFile("same_scans/scans.e57"), "--pose-convention", "w-last"});
+  expectDataError("so --extrinsic has nothing to move", {"scans", las, "--extrinsic", "0 0 1 0 0 0 1"});
+  expectDataError("use --crop", {"pcd2map", las, "-o", own("a.gmap"), "--max-range", "5"});
+}
+
+TEST_F(FormatsApp, SayWhatTheyDoNotRead) {
+  const auto warningsOf = [](const Words& words) { return runApp(words).out; };
+  fs::create_directory(own("mixed"));
+  copy("same_scans/pcd/000000.pcd", "mixed/a.pcd");
+  copy("same_scans/las/000000.las", "mixed/b.las");
+  EXPECT_NE(warningsOf({"scans", own("mixed")}).find("only the .pcd files are read"), std::string::npos);
+  EXPECT_NE(warningsOf({"scans", formatsFile("ply/pcl_binary.ply")}).find("the pose in the element camera"),
+            std::string::npos);
+  expectDataError("the rows are the Gaussians of a map",
+                  {"scans", write("map.csv", "scale,cell_side,x,y,z,cov_xx\n0,0.1,1,2,3,1\n")});
+  expectDataError("if the rows are poses, give the file with --poses", {"scans", write("p.txt", "1 2 3 0 0 0 1 9\n")});
+  expectDataError("is an archive (tar, gzip); expand it with tar xzf",
+                  {"scans", write("a.tar.gz", "\x1F\x8B\x08" + std::string(100, '\1'))});
+  expectDataError("UTF-16: save it as UTF-8", {"scans", write("u.csv", "\xFF\xFEx")});
+}
+
 TEST_F(FormatsApp, NeedSensorPositionsToFollowRays) {
   const std::string las = formatsFile("same_scans/las");
   expectDataError("does not say where the sensor was", {"pcd2map", las, "-o", own("a.gmap"), "--online"});

@@ -211,6 +211,20 @@ TEST_F(RecordingsApp, OfPointsInTheMapFrameTakeThePositionsOfTheSensorFromATopic
   expectRight(kFromFirst, "fast_lio.mcap", {"--poses", "/Odometry", "--frame", "map"}, {"--online"});
 }
 
+TEST_F(RecordingsApp, MountTheSensorOnTheRobotWhosePosesAreInAFile) {
+  expectRight(kInMap, "tf.mcap", {"--poses", robot("truth/robot.tum"), "--pose-frame", "base_link"});
+  expectAdvice("tf has no such frame", {robot("tf.mcap"), "--poses", robot("truth/robot.tum"), "--pose-frame", "x"});
+}
+
+TEST_F(RecordingsApp, WarnIfOptionsAndFramesContradictEachOther) {
+  const Outcome moving = runApp(build({robot("tf.mcap"), "--frame", "map"}));
+  EXPECT_NE(moving.err.find("which moves, but --frame map"), std::string::npos) << moving.err;
+  const Outcome unused = runApp(build({robot("fast_lio.mcap"), "--poses", "/Odometry"}));
+  EXPECT_NE(unused.err.find("so the poses are not used"), std::string::npos) << unused.err;
+  expectUsageError("a topic begins with a slash: --poses /odom", build({robot("odometry.mcap"), "--poses", "odom"}));
+  expectAdvice("this is the frame of the scans, which moves", {robot("tf.mcap"), "--fixed-frame", "velodyne"});
+}
+
 TEST_F(RecordingsApp, InDifferentFramesAreNotMixed) {
   expectAdvice("--fixed-frame", {robot("tf.mcap"), robot("laser.mcap")});
   const Outcome outcome = runApp(build({robot("tf.mcap"), robot("laser.mcap"), "--fixed-frame", "odom"}));

@@ -215,6 +215,32 @@ TEST_F(BagScansTest, GiveMountingsForPosesFromElsewhere) {
   expectComplaint(complaint(options), "drive.bag", {"--pose-frame robot: tf has no such frame"});
 }
 
+TEST_F(BagScansTest, SayThatPosesAreFromOtherTimes) {
+  clouds("/points", "base_link");
+  odometry("/odom", "odom", "base_link");
+  EXPECT_EQ(warningsOf(*open()), "");
+  bag_ = std::make_unique<test::MemoryMessages>();
+  clouds("/points", "base_link", kStart - 0.08);  // the first scan is before the first pose
+  odometry("/odom", "odom", "base_link");
+  EXPECT_TRUE(has(warningsOf(*open()), "1 of 10 scans has the pose of another time, at most 0.03"))
+      << warningsOf(*open());
+}
+
+TEST_F(BagScansTest, SayThatCloudsHaveRoomForMorePoints) {
+  const std::size_t index = bag_->addTopic("/points", "sensor_msgs/PointCloud2");
+  CloudBytes cloud;
+  cloud.width = 1;
+  cloud.height = 1;
+  cloud.row_step = 2 * cloud.point_step;
+  bag_->add(index, kStart, cloud.at(kStart));
+  EXPECT_TRUE(has(warningsOf(*open()), "room for more points than their width says")) << warningsOf(*open());
+}
+
+TEST_F(BagScansTest, NameThePacketsOfALidar) {
+  bag_->add(bag_->addTopic("/velodyne_packets", "velodyne_msgs/VelodyneScan"), kStart, "x");
+  expectComplaint(complaint({}), "drive.bag", {"/velodyne_packets holds the packets of a lidar"});
+}
+
 TEST_F(BagScansTest, RefuseTimesThatStepBack) {
   clouds();
   clouds();  // simulated time starts again
