@@ -181,6 +181,15 @@ TEST_F(FormatsApp, CleanScansOfARecordingAsPcdFiles) {
   }
 }
 
+TEST_F(FormatsApp, CleanTextsAsPcdFiles) {
+  std::string text = "x y z\n";
+  for (int i = 0; i < 100; ++i) text += std::to_string(5 + i % 10) + " " + std::to_string(i / 10) + " 1\n";
+  succeed({"clean", write("a.csv", text), write("b.csv", text + "5 5 2\n"), "-o", own("clean"), "--poses",
+           write("poses.txt", "a 0 0 0 0 0 0 1\nb 0.1 0 0 0 0 0 1\n"), "--no-pose-check"});
+  EXPECT_EQ(PcdReader(own("clean/a.pcd")).size(), 100u);
+  EXPECT_EQ(PcdReader(own("clean/b.pcd")).size(), 101u);
+}
+
 TEST_F(FormatsApp, RegisterEachScanOfARecording) {
   const std::string bag = formatsFile("same_scans/scans.bag");
   succeed({"pcd2map", bag, "-o", own("map.gmap"), "--no-curves"});

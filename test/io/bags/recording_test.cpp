@@ -59,6 +59,14 @@ TEST_F(RecordingFolders, JoinTheFilesOfTheMetadata) {
   EXPECT_EQ(file->topics()[0].messages, 2u);
 }
 
+TEST_F(RecordingFolders, HaveTheirFilesInTheOrderOfTheNumbers) {
+  const Lines names = {"rec_0.mcap", "rec_1.mcap.zstd", "rec_2.mcap", "rec_10.mcap"};
+  for (const std::string& name : names) directory_.write(name, "");
+  Lines found;
+  for (const fs::path& file : detail::findRecordingFiles(path()).files) found.push_back(file.filename().string());
+  EXPECT_EQ(found, names);
+}
+
 TEST_F(RecordingFolders, ReportMissingAndOtherFiles) {
   directory_.write("bag_0.mcap", recordingOf("/a", 1, "x"));
   directory_.write("copy.mcap", recordingOf("/a", 2, "y"));

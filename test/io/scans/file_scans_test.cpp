@@ -39,8 +39,8 @@ TEST(FileScansOfManyFiles, ReleaseTheMemoryOfFilesThatWereRead) {
   const TemporaryDirectory directory;
   std::vector<FileScan> list;
   for (std::size_t i = 0; i < kFiles; ++i) list.push_back({directory.write(std::to_string(i) + ".bin", bytes), Pose()});
-  const FileScans scans(list);
   const std::size_t before = mappedBytes();
+  const FileScans scans(list);
   PointBlock<3> block;
   for (int round = 0; round < 2; ++round)
     for (std::size_t i = 0; i < kFiles; ++i) {
