@@ -1,12 +1,17 @@
-#!/ usr / bin / env bash
-#SPDX - License - Identifier : BSD - 3 - Clause
-#Builds the fuzzers with clang and runs each for SECONDS, with the address and undefined - behaviour sanitizers.The
-#seeds are in test / fuzz / corpus; new inputs go to build / sanitize / corpus, findings to build / sanitize / findings.
-#Usage : test / fuzz / run.sh[SECONDS[TARGET...]](default : 30 seconds each, all targets)
-set - euo pipefail cd "$(dirname " $0 ")/../.." seconds =
-${1 : -30}./ cmake / install - deps.sh-- checks build =
-    build / sanitize launcher = $(command - v ccache || true) cmake-- preset sanitize - DCMAKE_CXX_COMPILER_LAUNCHER =
-                                    "$launcher" > / dev / null targets = ("${@:2}") if (($ { #targets[@] } == 0)); then
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Builds the fuzzers with clang and runs each for SECONDS, with the address and undefined-behaviour sanitizers. The
+# seeds are in test/fuzz/corpus; new inputs go to build/sanitize/corpus, findings to build/sanitize/findings.
+# Usage: test/fuzz/run.sh [SECONDS [TARGET...]] (default: 30 seconds each, all targets)
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+seconds=${1:-30}
+./cmake/install-deps.sh --checks
+build=build/sanitize
+launcher=$(command -v ccache || true)
+cmake --preset sanitize -DCMAKE_CXX_COMPILER_LAUNCHER="$launcher" >/dev/null
+targets=("${@:2}")
+if ((${#targets[@]} == 0)); then
   for seeds in test/fuzz/corpus/*/; do targets+=("$(basename "$seeds")"); done
 fi
 cmake --build "$build" -j 2 --target "${targets[@]/#/fuzz_}"
