@@ -27,7 +27,7 @@ struct RecordingFolder {
 /// Returns true if a directory has a metadata.yaml of rosbag2, or only files with the names of recordings.
 bool isRecordingFolder(const std::filesystem::path& folder);
 
-/// Finds the files of a recording. Throws FileError if there are none.
+/// Finds the files of a recording. Throws FileError if no file is found.
 RecordingFolder findRecordingFiles(const std::filesystem::path& folder);
 
 /// Opens one file, by its content. Throws FileError.

@@ -56,7 +56,7 @@ class LazChunkFinder {
            lasNumber<std::uint32_t>(bytes_.data() + position) == 0;
   }
 
-  /// Returns the position of the table; 0 if there is none.
+  /// Returns the position of the table; 0 if the file has no table.
   std::size_t tablePosition() const {
     const auto position = lasNumber<std::int64_t>(bytes_.data() + header_.data_offset);
     const auto first = static_cast<std::int64_t>(chunks_.first_byte);

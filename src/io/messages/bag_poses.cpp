@@ -22,7 +22,7 @@ constexpr nanoseconds kUsualLimit = milliseconds(50);  // for one scan
 // Transforms can be sent by several programs, in a different order.
 constexpr nanoseconds kMostDisorder = milliseconds(1000);
 
-/// The pose of one scan, or the reason why there is none.
+/// The pose of one scan, or the reason why it has no pose.
 using PoseOfScan = std::function<std::optional<Pose>(const BagScan& scan, PoseLookup& lookup)>;
 using Times = std::pair<nanoseconds, nanoseconds>;  // the first and the last one
 
@@ -60,7 +60,7 @@ class PoseAssigner {
   void warn(const std::string& text) { assigned_.warnings.push_back(text); }
   [[noreturn]] void fail(const std::string& text) const { throw FileError(path_, text); }
 
-  /// Returns the fixed frame of tf for a frame; empty if there is none above it.
+  /// Returns the fixed frame of tf for a frame; empty if no frame is above it.
   std::string fixedFrame(const std::string& of) const {
     if (!options_.fixed_frame.empty()) return frameName(options_.fixed_frame);
     const std::vector<std::string> above = tree_.above(of);
@@ -119,7 +119,7 @@ class PoseAssigner {
     return chain && chain->moves;
   }
 
-  /// `still`: the frame of tf in which the sensor does not move; empty if there is none.
+  /// `still`: the frame of tf in which the sensor does not move; empty if it moves in all frames.
   void sayWhyNone(const std::vector<TopicGroup>& topics, const std::string& still, const std::string& reason) {
     std::string &text = assigned_.missing.reason, &advice = assigned_.missing.advice;
     if (!topics.empty()) {

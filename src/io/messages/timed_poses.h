@@ -41,7 +41,7 @@ class TimedPoses {
   /// Returns the first pose. There must be one.
   const Pose& front() const { return poses_.front(); }
 
-  /// Returns the largest step back between poses in the order in which they were added; 0 if there is none.
+  /// Returns the largest step back between poses in the order in which they were added; 0 if all times ascend.
   std::chrono::nanoseconds stepBack() const { return step_back_; }
 
   /// Returns the pose at a time: linear interpolation of the translation, slerp of the rotation. Returns std::nullopt

@@ -41,15 +41,15 @@ class TransformTree {
   bool empty() const { return frames_.empty(); }
   /// Returns true if a transform has this frame as child or parent.
   bool has(const std::string& frame) const { return indices_.count(frameName(frame)) > 0; }
-  /// Returns the frames above `frame`, the nearest first; empty if there are none or if they form a cycle.
+  /// Returns the frames above `frame`, the nearest first; empty if no frame is above it, or if the frames form a cycle.
   std::vector<std::string> above(const std::string& frame) const;
   /// Returns the names of all frames.
   const std::vector<std::string>& names() const { return frames_; }
   /// Returns the names of the frames for messages: "base_link, lidar, odom".
   std::string frames() const;
   /// Returns the way from `source` to `target`: pose(chain, time) maps points of `source` to `target`. Returns
-  /// std::nullopt if there is none, and says why in `reason`: a frame is missing, the frames are not connected, or the
-  /// parents of a frame form a cycle.
+  /// std::nullopt if tf does not give it, and says why in `reason`: a frame is missing, the frames are not connected,
+  /// or the parents of a frame form a cycle.
   std::optional<TransformChain> chain(const std::string& target, const std::string& source, std::string& reason) const;
   /// Returns the transform of a chain at a time. Returns std::nullopt if a transform is not known at that time, and
   /// says which one in lookup.reason. Takes O(log n) per transform of the chain.
@@ -57,7 +57,7 @@ class TransformTree {
   /// A transform that has the same value in the whole recording is valid at all times.
   std::optional<Pose> pose(const TransformChain& chain, std::chrono::nanoseconds time, const PoseTimeLimits& limits,
                            PoseLookup& lookup) const;
-  /// Returns the first and the last time of the moving transforms of a chain; std::nullopt if none moves.
+  /// Returns the first and the last time of the moving transforms of a chain; std::nullopt if all are static.
   std::optional<std::pair<std::chrono::nanoseconds, std::chrono::nanoseconds>> timesOf(
       const TransformChain& chain) const;
   /// Throws std::runtime_error if the times of a moving transform of the chain step back by more than `limit` in the

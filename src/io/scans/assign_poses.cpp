@@ -131,7 +131,7 @@ void addOnce(const std::string& text, std::vector<std::string>& texts) {
   if (!text.empty() && std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
 }
 
-/// Takes the poses that the files have. Throws FileError if scans need a pose, but have none.
+/// Takes the poses that the files have. Throws FileError if a scan needs a pose but has no pose.
 void posesOfFiles(const std::vector<ScanPose>& scans, const FindScansOptions& options, AssignedPoses& assigned) {
   std::vector<std::string> sources, missing;
   bool without_source = false;

@@ -61,7 +61,7 @@ class KeptReaders {
 
   /// Sets the number of bytes that the points of further readers may take.
   void allow(std::size_t bytes);
-  /// Returns the reader of a scan and stops keeping it; nullptr if there is none.
+  /// Returns the reader of a scan and stops keeping it; nullptr if the scan has no kept reader.
   Reader take(std::size_t scan);
   /// Keeps the reader of a scan whose points take this many bytes, if the limit allows it.
   void keep(std::size_t scan, const Reader& reader, std::size_t bytes);

@@ -111,10 +111,10 @@ class GAUSSMAP_API FileScans : public Scans {
 /// Returns the files of a list of inputs, in the order of the inputs.
 ///
 /// A file is listed unchanged, and so is the folder of a recording (with metadata.yaml, or with nothing but .mcap, .db3
-/// or .bag files). Another directory is replaced by its *.pcd and *.pcd.gz files, in natural order; if it has none, by
-/// the files of another kind (.bin .ply .las .laz .e57 .pts .ptx .xyz .mcap .db3 .bag). The search is not recursive,
-/// ignores case, and skips hidden files. Throws FileError if an input does not exist, or if a directory has no such
-/// file or has files of several kinds, but no PCD file.
+/// or .bag files). Another directory is replaced by its *.pcd and *.pcd.gz files, in natural order; if it has no such
+/// file, by the files of another kind (.bin .ply .las .laz .e57 .pts .ptx .xyz .mcap .db3 .bag). The search is not
+/// recursive, ignores case, and skips hidden files. Throws FileError if an input does not exist, or if a directory has
+/// no such file or has files of several kinds, but no PCD file.
 GAUSSMAP_API std::vector<std::filesystem::path> listScans(const std::vector<std::filesystem::path>& inputs);
 
 /// The pose of the sensor in the frame that the poses describe, for example of a lidar on a vehicle.
@@ -151,7 +151,7 @@ struct FoundScans {
   std::string poses;                      ///< where the poses come from and how they were matched, one sentence
   std::vector<std::string> without_pose;  ///< the scans that were left out, with the reason
   std::vector<Pose> poses_as_read;        ///< per scan: the pose as read, before convention and extrinsic
-  Pose extrinsic;                         ///< the extrinsic that was applied; the identity if none was
+  Pose extrinsic;                         ///< the extrinsic that was applied; the identity without one
 };
 
 /// Lists the scans (see listScans()), assigns the poses, and checks them.
