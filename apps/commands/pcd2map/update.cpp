@@ -38,7 +38,7 @@ Recorded recordedIn(const MapMetadata& metadata) {
   return recorded;
 }
 
-AccumulatedScans accumulate(const Pcd2mapOptions& options, const Scans& scans, double resolution) {
+AccumulatedScans<> accumulate(const Pcd2mapOptions& options, const Scans& scans, double resolution) {
   ProgressBar bar;
   AccumulatedScans accumulated =
       accumulateScans(scans, accumulateOptions(options.input, resolution, options.budget.refine.threads),
