@@ -3,22 +3,9 @@
 
 #include <cstddef>
 #include <utility>
+#include <vector>
 
 namespace gaussmap::detail {
-
-std::vector<Vector<3>> inSpace(const std::vector<Vector<2>>& points) {
-  std::vector<Vector<3>> result;
-  result.reserve(points.size());
-  for (const Vector<2>& point : points) result.push_back(inSpace(point));
-  return result;
-}
-
-Gaussian<3> inSpace(const Gaussian<2>& gaussian, double noise) {
-  Gaussian<3> result{inSpace(gaussian.mean), Matrix<3>::Zero(), gaussian.weight};
-  result.cov.topLeftCorner<2, 2>() = gaussian.cov;
-  result.cov(2, 2) = noise * noise;
-  return result;
-}
 
 GaussianMap<3> inSpace(const GaussianMap<2>& map) {
   std::vector<MapScale<3>> scales;
