@@ -46,7 +46,7 @@ void run(const RestoreCommand& command) {
     throw FileError(command.map, std::string(old.isCompressed() ? "is compressed" : "holds Gaussians only") +
                                      ", so clusters cannot be restored exactly; use a map with moments");
   const std::vector<RemovedCluster<3>> removed = readRemoved(command.removed);
-  RestoredMap restored;
+  RestoredMap<3> restored;
   try {
     restored = restoreClusters(old, removed, isInside, command.threads);
   } catch (const std::invalid_argument& error) {
