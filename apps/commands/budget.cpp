@@ -16,7 +16,8 @@ const std::map<std::string, RefineMethod> kMethods = {{"agglomerate", RefineMeth
                                                       {"insert", RefineMethod::Insert}};
 const std::map<std::string, MergeCost> kCosts = {{"volume", MergeCost::Volume}, {"runnalls", MergeCost::Runnalls}};
 
-bool isUnrefined(const GaussianMap<3>& map) {
+template <int D>
+bool isUnrefined(const GaussianMap<D>& map) {
   for (int s = 1; s < map.scales(); ++s)
     if (map.gaussianCount(s) != map.cellCount(s)) return false;
   return true;
@@ -38,7 +39,8 @@ std::uintmax_t amountOf(const std::string& option, std::string_view text, bool s
   return value * unit;
 }
 
-std::map<int, std::size_t> maxGaussians(const BudgetInput& input, const GaussianMap<3>& map, int first_scale) {
+template <int D>
+std::map<int, std::size_t> maxGaussians(const BudgetInput& input, const GaussianMap<D>& map, int first_scale) {
   const std::vector<std::string>& words = input.max_gaussians;
   const int scales = map.scales();
   std::map<int, std::size_t> limits;
@@ -64,7 +66,8 @@ std::map<int, std::size_t> maxGaussians(const BudgetInput& input, const Gaussian
   return limits;
 }
 
-Budget budgetOf(const BudgetInput& input, const GaussianMap<3>& map, int first_scale) {
+template <int D>
+Budget budgetOf(const BudgetInput& input, const GaussianMap<D>& map, int first_scale) {
   if (!input.max_bytes.empty()) return MaxBytes{amountOf("--max-bytes", input.max_bytes, true), {}};
   if (input.max_error > 0.0) return MaxError{input.max_error, {}};
   if (!input.max_gaussians.empty()) return MaxGaussians{maxGaussians(input, map, first_scale)};
@@ -126,7 +129,8 @@ void checkBudget(const BudgetInput& input) {
   if (input.method == "insert" && input.cost) throw UsageError("--cost: only for --method agglomerate");
 }
 
-GaussianMap<3> refineWithin(GaussianMap<3> map, const BudgetInput& input, MapMetadata& metadata, Json step) {
+template <int D>
+GaussianMap<D> refineWithin(GaussianMap<D> map, const BudgetInput& input, MapMetadata& metadata, Json step) {
   Budget budget = budgetOf(input, map, 1);
   RefineOptions options = input.refine;
   options.method = kMethods.at(input.method);
@@ -140,12 +144,20 @@ GaussianMap<3> refineWithin(GaussianMap<3> map, const BudgetInput& input, MapMet
   recordCurves(metadata, {});  // the old curves describe the old map
   if (one_per_cell && isUnrefined(map)) return map;
   measureFile(budget, metadata, options.threads);
-  RefineResult<3> result = refine<3>(std::move(map), budget, options);
+  RefineResult<D> result = refine<D>(std::move(map), budget, options);
   for (const NotReached& scale : result.not_reached)
     std::cerr << "gaussmap: warning: scale " << scale.scale << " does not reach --max-error " << input.max_error
               << ": with as many Gaussians as the finer scale, 95 % of the samples lie within " << scale.q95 << " m\n";
   recordCurves(metadata, result.curves);
   return std::move(result.map);
 }
+
+#define GAUSSMAP_INSTANTIATE(D)                                                                     \
+  template std::map<int, std::size_t> maxGaussians(const BudgetInput&, const GaussianMap<D>&, int); \
+  template Budget budgetOf(const BudgetInput&, const GaussianMap<D>&, int);                         \
+  template GaussianMap<D> refineWithin(GaussianMap<D>, const BudgetInput&, MapMetadata&, Json);
+GAUSSMAP_INSTANTIATE(2)
+GAUSSMAP_INSTANTIATE(3)
+#undef GAUSSMAP_INSTANTIATE
 
 }  // namespace gaussmap::app

@@ -40,10 +40,12 @@ void checkBudget(const BudgetInput& input);
 /// Returns --max-gaussians by scale. "N" limits every coarse scale, or the only scale of a map with one scale.
 /// "SCALE=N" limits one scale and has precedence. Throws UsageError for scales below `first_scale`, and if a limit is
 /// smaller than the number of cells of its scale.
-std::map<int, std::size_t> maxGaussians(const BudgetInput& input, const GaussianMap<3>& map, int first_scale);
+template <int D>
+std::map<int, std::size_t> maxGaussians(const BudgetInput& input, const GaussianMap<D>& map, int first_scale);
 /// Returns the budget of the options for a map. Only scales from `first_scale` on can be limited. MaxBytes::size_of is
 /// not set; see measureFile(). Throws UsageError as maxGaussians() and amountOf().
-Budget budgetOf(const BudgetInput& input, const GaussianMap<3>& map, int first_scale);
+template <int D>
+Budget budgetOf(const BudgetInput& input, const GaussianMap<D>& map, int first_scale);
 /// Returns --cost, or its default.
 MergeCost mergeCost(const BudgetInput& input);
 /// Returns `step` with --cost and --max-gaussians as the user typed them, as JSON, for refineStep() and simplifyStep().
@@ -53,6 +55,7 @@ void measureFile(Budget& budget, const MapMetadata& metadata, int threads);
 
 /// Refines the map within the budget. Adds the error curves to the metadata and `step`, completed with the budget, to
 /// the history. Warns on stderr of scales that cannot reach --max-error. Throws UsageError as budgetOf().
-GaussianMap<3> refineWithin(GaussianMap<3> map, const BudgetInput& input, MapMetadata& metadata, Json step);
+template <int D>
+GaussianMap<D> refineWithin(GaussianMap<D> map, const BudgetInput& input, MapMetadata& metadata, Json step);
 
 }  // namespace gaussmap::app

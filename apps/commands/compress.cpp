@@ -28,7 +28,8 @@ const Help kCompressHelp = {
 The other Gaussians stay unchanged. The result accepts no more scans and cannot be refined, so refine first.)"};
 
 /// Returns scalesOf() with the counts of cells and Gaussians before the compression.
-Json scalesWithCountsBefore(const GaussianMap<3>& map, const GaussianMap<3>& whole) {
+template <int D>
+Json scalesWithCountsBefore(const GaussianMap<D>& map, const GaussianMap<D>& whole) {
   Json scales = scalesOf(map);
   for (int s = 0; s < map.scales(); ++s) {
     scales[static_cast<std::size_t>(s)]["cells_before"] = whole.cellCount(s);
@@ -47,12 +48,13 @@ void print(const CompressCommand& command, const Json& scales, const MapTask& ta
                 scale["gaussians"].get<std::size_t>(), scale["gaussians_before"].get<std::size_t>());
 }
 
+template <int D>
 void run(CompressCommand command) {
   MapTask task(command);
-  const GaussianMap<3> whole = task.load();
+  const GaussianMap<D> whole = task.load<D>();
   if (whole.isCompressed()) throw std::runtime_error(command.map + ": is already compressed; use the original map");
   command.compress.threads = command.threads;
-  const GaussianMap<3> map = compress(whole, command.max_error, command.compress);
+  const GaussianMap<D> map = compress(whole, command.max_error, command.compress);
   task.addStep("compress", {{"max_error", command.max_error}, {"seed", command.compress.seed}});
   task.save(map);
   MapReport report;
@@ -78,7 +80,7 @@ void addCompress(CLI::App& app) {
       .hideDefault();
   command.seed(options->compress.seed, "seed of the samples").rare();
   addRunOptions(command, *options);
-  command.onRun([options] { run(*options); });
+  command.onRun([options] { forMap(options->map, [&](auto dimensions) { run<dimensions()>(*options); }); });
 }
 
 }  // namespace gaussmap::app

@@ -34,22 +34,24 @@ Polygon polygonOf(const std::vector<double>& n) {
   return Polygon(std::move(corners));
 }
 
-std::function<bool(const Vector<3>&)> region(const CropCommand& command) {
+template <int D>
+std::function<bool(const Vector<D>&)> region(const CropCommand& command) {
   if (!command.box.empty())
-    return [box = boxOf("--box", command.box), outside = command.outside](const Vector<3>& p) {
-      return isInBox<3>(box, p) != outside;
+    return [box = mapBoxOf<D>("--box", command.box), outside = command.outside](const Vector<D>& p) {
+      return isInBox<D>(box, p) != outside;
     };
-  return [polygon = polygonOf(command.polygon), outside = command.outside](const Vector<3>& p) {
+  return [polygon = polygonOf(command.polygon), outside = command.outside](const Vector<D>& p) {
     return polygon.contains(p.x(), p.y()) != outside;
   };
 }
 
+template <int D>
 void run(const CropCommand& command) {
   MapTask task(command);
   if (command.box.empty() == command.polygon.empty()) throw UsageError("crop needs one of --box and --polygon");
-  const auto isInside = region(command);
-  const GaussianMap<3> whole = task.load();
-  const GaussianMap<3> map = crop<3>(whole, isInside);
+  const auto isInside = region<D>(command);
+  const GaussianMap<D> whole = task.load<D>();
+  const GaussianMap<D> map = crop<D>(whole, isInside);
   if (map.empty()) throw std::runtime_error(command.map + ": no Gaussian lies in this region");
   Json step = {{"outside", command.outside}};
   step[command.box.empty() ? "polygon" : "box"] = command.box.empty() ? command.polygon : command.box;
@@ -65,12 +67,12 @@ void addCrop(CLI::App& app) {
   Command command(app, "crop", kCropHelp);
   addMapToMap(command, *options);
   command.numbers("--box", options->box, 4, 6, -1e12, 1e12,
-                  "x0 y0 x1 y1, or x0 y0 z0 x1 y1 z1 [m]: low corner <= mean < high corner");
+                  "x0 y0 x1 y1, or (not for planar maps) x0 y0 z0 x1 y1 z1 [m]: low corner <= mean < high corner");
   command.numbers("--polygon", options->polygon, 6, 1000000, -1e12, 1e12,
                   "x y of the corners, in order [m]; all heights are inside");
   command.flag("--outside", options->outside, "keep the Gaussians outside instead");
   command.json(options->json);
-  command.onRun([options] { run(*options); });
+  command.onRun([options] { forMap(options->map, [&](auto dimensions) { run<dimensions()>(*options); }); });
 }
 
 }  // namespace gaussmap::app

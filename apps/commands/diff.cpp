@@ -3,13 +3,13 @@
 #include <cstdio>
 #include <memory>
 
+#include "commands/any_map.h"
 #include "commands/commands.h"
 #include "common/box.h"
 #include "common/command.h"
 #include "common/json.h"
 #include "common/report.h"
 #include "gaussmap/editing/diff_maps.h"
-#include "gaussmap/io/pcd/map_pcd.h"
 #include "gaussmap/map/queries.h"
 #include "io/export/diff_pcd.h"
 
@@ -32,33 +32,35 @@ are x y z covariance[6] weight p_value label. Labels: 0 the same, or too few poi
 refined coarse scales, the same surface can be divided into other clusters, which then count as changed.)"};
 
 /// Warns if the maps share no cell, or nearly none, because then everything is new or gone.
-void warnOfOverlap(const DiffCommand& options, const GaussianMap<3>& first, const GaussianMap<3>& second) {
+template <int D>
+void warnOfOverlap(const DiffCommand& options, const GaussianMap<D>& first, const GaussianMap<D>& second) {
   constexpr double kFewest = 0.01;
   const int s = options.diff.scale;
   const auto &few = first.cellCount(s) < second.cellCount(s) ? first : second, &many = &few == &first ? second : first;
-  const auto extent = extentOf<3>(first), other = extentOf<3>(second);
+  const auto extent = extentOf<D>(first), other = extentOf<D>(second);
   if (!extent || !other) return;
   std::size_t shared = 0;
-  for (const CellKey<3>& key : few.scale(s).keys) shared += many.find(key, s).has_value();
+  for (const CellKey<D>& key : few.scale(s).keys) shared += many.find(key, s).has_value();
   if (static_cast<double>(shared) >= kFewest * static_cast<double>(few.cellCount(s)) && shared > 0) return;
   warn(options.first + " and " + options.second +
        (shared == 0 ? " do not overlap" : " hardly overlap: " + std::to_string(shared) + " common cells") + " (" +
        textOf(*extent) + " and " + textOf(*other) + "); are both in the same frame? See gaussmap transform");
 }
 
+template <int D>
 void run(const DiffCommand& options) {
   if (!options.output.empty()) {
     requireExtension(options.output, ".pcd");
     checkOutput({options.output, options.force}, {options.first, options.second});
   }
   const double start = now();
-  const GaussianMap<3> first = loadAny(options.first), second = loadAny(options.second);
+  const GaussianMap<D> first = loadMap<D>(options.first), second = loadMap<D>(options.second);
   const int s = options.diff.scale;
   checkScale("--scale", s, first.scales(), options.first);
   checkScale("--scale", s, second.scales(), options.second);
   if (first.grid().side(s) == second.grid().side(s)) warnOfOverlap(options, first, second);
-  const MapDiff diff = diffMaps<3>(first, second, options.diff);
-  if (!options.output.empty()) detail::writeDiffPcd(options.output, first, second, diff, s);
+  const MapDiff diff = diffMaps<D>(first, second, options.diff);
+  if (!options.output.empty()) detail::writeDiffPcd(options.output, spaceMap(first), spaceMap(second), diff, s);
   const std::size_t none = diff.count(Change::None), fresh = diff.count(Change::New), gone = diff.count(Change::Gone),
                     changed = diff.count(Change::Changed);
   if (options.json) {
@@ -102,7 +104,7 @@ void addDiff(CLI::App& app) {
   command.json(options->json);
   command.files({"first", "second"}, {".gmap", ".pcd"});
   command.files({"--output"}, {".pcd"});
-  command.onRun([options] { run(*options); });
+  command.onRun([options] { forMap(options->first, [&](auto dimensions) { run<dimensions()>(*options); }); });
 }
 
 }  // namespace gaussmap::app

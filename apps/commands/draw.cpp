@@ -3,30 +3,39 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <set>
 #include <stdexcept>
+#include <utility>
 
+#include "commands/any_map.h"
 #include "commands/commands.h"
 #include "common/command.h"
 #include "common/report.h"
 #include "drawing/map_picture.h"
 #include "drawing/plan_view.h"
-#include "gaussmap/io/pcd/map_pcd.h"
 
 namespace gaussmap::app {
 namespace {
 
-constexpr std::size_t kMaxEllipses = 200000;  // already 30 MB of text, which is the limit of many viewers
+constexpr std::size_t kMaxEllipses = 200000;         // already 30 MB of text, which is the limit of many viewers
+constexpr double kSigma = 2.0, kOverlaySigma = 3.0;  // default half axes [standard deviations]
+constexpr const char *kPlanarColour = "#22488c", *kCoarseColour = "#1f4fd8", *kFineColour = "#d61f1f";
 
 const Help kDrawHelp = {
     "Draw maps from above: the ellipses of one scale, coloured by height",
     "gaussmap draw one.gmap street.gmap -o street.svg --scale 2",
-    R"(One panel per map, all drawn to the same scale. Each ellipse is the exact projection of an ellipsoid.)"};
+    R"(One panel per map, all drawn to the same scale. Each ellipse is the exact projection of an ellipsoid.
+Planar maps have no heights, so their ellipses have one colour.
+
+--overlay draws the coarsest scale (or that of --scale) in blue, the finest scale in red, and the cells of the coarse
+scale as black squares, as in Fig. 7 of Yguel et al. 2009.)"};
 
 struct DrawCommand {
   std::vector<std::string> maps;
   Output output;
   std::optional<int> scale;
-  double sigma = 2.0;
+  std::optional<double> sigma;
+  bool overlay = false;
   std::vector<double> box;
 };
 
@@ -37,18 +46,51 @@ std::optional<Box<2>> givenWindow(const std::vector<double>& box) {
   return Box<2>{{box[0], box[1]}, {box[2], box[3]}};
 }
 
+/// "scale 2 (10 m), 40 Gaussians"
+std::string titleOf(const GaussianMap<3>& map, int scale) {
+  return "scale " + std::to_string(scale) + " (" + numberText(map.grid().side(scale)) + " m), " +
+         std::to_string(map.gaussianCount(scale)) + " Gaussians";
+}
+
+/// Adds the ellipses of a scale. An empty colour means the colour of the height.
+void addEllipses(const GaussianMap<3>& map, int scale, double sigma, const std::string& colour, Panel& panel) {
+  panel.ellipses.reserve(panel.ellipses.size() + map.gaussianCount(scale));
+  for (std::size_t i = 0; i < map.gaussianCount(scale); ++i) {
+    panel.ellipses.push_back(ellipseFromAbove(map.gaussian(i, scale), sigma));
+    panel.ellipses.back().colour = colour;
+  }
+}
+
+/// Returns the squares of the cells of a scale, seen from above, each once [m].
+std::vector<Box<2>> squaresOf(const GaussianMap<3>& map, int scale) {
+  std::set<std::pair<std::int32_t, std::int32_t>> keys;
+  for (const CellKey<3>& key : map.scale(scale).keys) keys.emplace(key[0], key[1]);
+  std::vector<Box<2>> squares;
+  const double side = map.grid().side(scale);
+  for (const auto& [x, y] : keys) squares.push_back({Vector<2>(x, y) * side, Vector<2>(x + 1.0, y + 1.0) * side});
+  return squares;
+}
+
 Panel panelOf(const std::string& path, const DrawCommand& options) {
-  const GaussianMap<3> map = loadAny(path);
+  const bool is_planar = dimensionsOf(path) == 2;
+  const GaussianMap<3> map = loadInSpace(path);
   const int scale = options.scale.value_or(map.scales() - 1);
   checkScale("--scale", scale, map.scales(), path);
-  const std::size_t count = map.gaussianCount(scale);
   Panel panel;
-  panel.cell_side = map.grid().side(scale);
-  panel.title = std::filesystem::path(path).filename().string() + ": scale " + std::to_string(scale) + " (" +
-                numberText(panel.cell_side) + " m), " + std::to_string(count) + " Gaussians";
-  panel.ellipses.reserve(count);
-  for (std::size_t i = 0; i < count; ++i)
-    panel.ellipses.push_back(ellipseFromAbove(map.gaussian(i, scale), options.sigma));
+  panel.title = std::filesystem::path(path).filename().string() + ": " + titleOf(map, scale);
+  if (!options.overlay) {
+    panel.cell_side = map.grid().side(scale);
+    addEllipses(map, scale, options.sigma.value_or(kSigma), is_planar ? kPlanarColour : "", panel);
+    return panel;
+  }
+  if (scale == 0)
+    throw UsageError(path + ": --overlay draws a coarse scale over the finest one; use --scale 1 or more");
+  const double sigma = options.sigma.value_or(kOverlaySigma);
+  panel.title += " over " + titleOf(map, 0);
+  panel.squares = squaresOf(map, scale);
+  panel.keys = {{kCoarseColour, "coarse scale", false}, {kFineColour, "finest scale", false}, {"#000000", "coarse cells", true}};
+  addEllipses(map, scale, sigma, kCoarseColour, panel);
+  addEllipses(map, 0, sigma, kFineColour, panel);
   return panel;
 }
 
@@ -59,6 +101,11 @@ Box<2> windowAround(const std::vector<Panel>& panels) {
     for (const Ellipse& ellipse : panel.ellipses) {
       include(window, ellipse.centre - ellipse.reach());
       include(window, ellipse.centre + ellipse.reach());
+    }
+  for (const Panel& panel : panels)
+    for (const Box<2>& square : panel.squares) {
+      include(window, square.low);
+      include(window, square.high);
     }
   return window;
 }
@@ -100,7 +147,9 @@ void addDraw(CLI::App& app) {
   command.texts("maps", options->maps, "maps (.gmap, or PCD of Gaussians)").required();
   command.output(options->output, "picture to write (.svg)");
   command.scale(options->scale, "scale to draw, 0 = finest; default: the coarsest");
-  command.number("--sigma", options->sigma, 0.01, 100.0, "half axes of the ellipses, in standard deviations");
+  command.number("--sigma", options->sigma, 0.01, 100.0,
+                 "half axes of the ellipses, in standard deviations; default: 2, with --overlay 3");
+  command.flag("--overlay", options->overlay, "draw the coarsest and the finest scale over each other, and the cells");
   command.numbers("--box", options->box, 4, -1e9, 1e9, "draw only the part from x0 y0 to x1 y1 [m]")
       .type("X0 Y0 X1 Y1");
   command.files({"maps"}, {".gmap", ".pcd"});

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "commands/any_map.h"
 #include "commands/commands.h"
 #include "common/command.h"
 #include "common/report.h"
@@ -32,7 +33,8 @@ const Help kExportHelp = {"Write the Gaussians of a map for other programs: PCD,
       Without --scale, the leaves of the map. Coordinates are floats: if the header has a comment "origin X Y Z", add
       it to all coordinates.
 .vtp  For ParaView: covariances and their square roots as tensors, normals, weights, occupancy, parents.
-.csv  One line per Gaussian.)"};
+.csv  One line per Gaussian.
+A planar map is written as flat Gaussians in the plane z = 0. Their standard deviation across it is the noise floor.)"};
 
 const std::map<std::string, PlyContent> kContents = {
     {"ellipsoids", PlyContent::Ellipsoids}, {"points", PlyContent::Points}, {"splats", PlyContent::Splats}};
@@ -78,7 +80,7 @@ void run(const ExportCommand& options) {
     throw UsageError(options.output.path + ": the name must end in .pcd, .ply, .vtp or .csv");
   checkPlyOptions(options, ending);
   checkOutput(options.output, {options.map});
-  const GaussianMap<3> map = loadAny(options.map);
+  const GaussianMap<3> map = loadInSpace(options.map);
   if (options.scale) checkScale("--scale", *options.scale, map.scales());
   const std::size_t count = write(options, map, ending);
   std::cout << options.output.path << ": " << count << " Gaussians, "

@@ -25,13 +25,14 @@ const Help kFinishHelp = {"Write a small, final map that accepts no more scans",
   - weights and log-odds by at most 1/32.
 Covariances stay positive definite. A final map can no longer be merged exactly, so keep the original map.)"};
 
+template <int D>
 void run(const FinishCommand& command) {
   MapTask task(command);
-  GaussianMap<3> map = task.load();
+  GaussianMap<D> map = task.load<D>();
   if (task.metadata.count(kFinalEntry) > 0)
     throw std::runtime_error(command.map + ": is already final; use the original map");
   checkScale("--finest-scale", command.finest_scale, map.scales());
-  map = finish<3>(map, command.finest_scale);
+  map = finish<D>(map, command.finest_scale);
   Json step = historyStep("finish");
   if (command.finest_scale > 0) {
     step["finest_scale"] = command.finest_scale;
@@ -68,7 +69,7 @@ void addFinish(CLI::App& app) {
   command.number("--compression", options->compression, 1, 19,
                  "zstd level; a higher level gives a smaller file, but takes longer");
   addRunOptions(command, *options);
-  command.onRun([options] { run(*options); });
+  command.onRun([options] { forMap(options->map, [&](auto dimensions) { run<dimensions()>(*options); }); });
 }
 
 }  // namespace gaussmap::app

@@ -25,8 +25,10 @@ Clouds are combined as in pcd2map. A PLY file with faces is a mesh, without face
 exact distances to its surface, and ref->map are the distances of --samples points on it. Another map is sampled in
 the same way at the same scale, so the distance of two equal maps is 0.
 
---held-out: a point x scores ln((1 - e) p(x) + e / V). p is the density of the scale [1/m^3], e is --background, and
-V is the volume of the box around the points. A point far from all Gaussians ("nowhere") scores the floor ln(e / V).
+A planar map lies in the plane z = 0. Scans lose their heights, and 3-D scans need --slice.
+
+--held-out: a point x scores ln((1 - e) p(x) + e / V). p is the density of the scale [1/m^3, planar maps 1/m^2], e is --background, and
+V is the volume (planar: area) of the box around the points. A point far from all Gaussians ("nowhere") scores the floor ln(e / V).
 Larger is better. Compare only scores of the same points. Make sure that the map was not built from these points.
 
 --write-errors: fields x y z error rgb, from blue = 0 over cyan, green and yellow to red = 99 % quantile and above.
@@ -63,6 +65,7 @@ void check(const HausdorffCommand& command, bool of_map, ReferenceKind reference
   if (command.max_only && (of_map || reference != ReferenceKind::Cloud || command.held_out))
     throw UsageError("--max-only: only for a cloud and clouds as the reference");
   if (command.max_only && writes) throw UsageError("--write-errors: needs all distances; leave out --max-only");
+  if (!of_map && !command.slice.empty()) throw UsageError("--slice: only for planar maps; --crop can have heights");
   if (!of_map && reference == ReferenceKind::Map)
     throw UsageError(command.onlyReference() + ": to compare a cloud with a map, name the map first");
   if (!writes) return;
@@ -76,9 +79,9 @@ void run(const HausdorffCommand& command) {
   const bool of_map = isMap(command.subject);
   const ReferenceKind reference = kindOf(command.reference.paths);
   check(command, of_map, reference);
-  if (command.held_out) return scoreMap(command);
+  if (command.held_out) return forMap(command.subject, [&](auto d) { scoreMap<d()>(command); });
   if (command.max_only) return compareMaxima(command);
-  if (of_map) return compareMap(command, reference);
+  if (of_map) return forMap(command.subject, [&](auto d) { compareMap<d()>(command, reference); });
   compareCloud(command, reference);
 }
 
@@ -128,6 +131,7 @@ void addHausdorff(CLI::App& app) {
       .rare();
   command.force(options->errors.force, "replace an existing file of errors");
   addScanOptions(command, options->reference);
+  addSlice(command, options->slice);
   command.threads(options->samples.threads);
   command.json(options->json);
   std::vector<std::string> endings = scanEndings();

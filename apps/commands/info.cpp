@@ -5,7 +5,9 @@
 #include <memory>
 #include <stdexcept>
 
+#include "commands/any_map.h"
 #include "commands/commands.h"
+#include "common/box.h"
 #include "common/command.h"
 #include "common/json.h"
 #include "common/report.h"
@@ -27,18 +29,22 @@ const Help kInfoHelp = {
     R"(bytes/m^2: compressed bytes per square metre of occupied cells. The area of a cell is the square of its side.)"};
 
 /// A map and the information in its file.
+template <int D>
 struct MapInfo {
-  GaussianMap<3> map;
+  GaussianMap<D> map;
   MapMetadata metadata;
-  std::optional<Box<3>> extent;
+  std::optional<Box<D>> extent;
   std::vector<ErrorCurve> curves;
   std::uintmax_t bytes = 0;
   bool has_tile_sizes = false;
   Json scales;
 };
 
-Json vectorOf(const Eigen::Vector3d& v) {
-  return {v.x(), v.y(), v.z()};
+template <int D>
+Json vectorOf(const Vector<D>& v) {
+  Json json = Json::array();
+  for (int axis = 0; axis < D; ++axis) json.push_back(v(axis));
+  return json;
 }
 
 /// {"command": "refine", "budget": 3.0} -> "command refine, budget 3.0"
@@ -52,7 +58,8 @@ std::string sentenceOf(const Json& step) {
 }
 
 /// Returns whether the map accepts more scans, and if not, why.
-std::string stateOf(const GaussianMap<3>& map, const MapMetadata& metadata) {
+template <int D>
+std::string stateOf(const GaussianMap<D>& map, const MapMetadata& metadata) {
   const auto final_error = metadata.find(kFinalEntry);
   if (final_error != metadata.end()) return "final (accepts no more scans): " + final_error->second;
   if (map.isCompressed()) return "compressed: detail only where it is needed (accepts no more scans)";
@@ -62,10 +69,11 @@ std::string stateOf(const GaussianMap<3>& map, const MapMetadata& metadata) {
 }
 
 /// Adds to each scale the cells, Gaussians and weight of its leaves.
-void addLeaves(const GaussianMap<3>& map, Json& scales) {
+template <int D>
+void addLeaves(const GaussianMap<D>& map, Json& scales) {
   const double all = map.weight(map.scales() - 1);
   for (int s = 0; s < map.scales(); ++s) {
-    const LeafCounts counts = leafCounts<3>(map, s);
+    const LeafCounts counts = leafCounts<D>(map, s);
     Json& scale = scales[static_cast<std::size_t>(s)];
     scale["leaf_cells"] = counts.cells;
     scale["leaf_gaussians"] = counts.gaussians;
@@ -74,7 +82,8 @@ void addLeaves(const GaussianMap<3>& map, Json& scales) {
 }
 
 /// Adds to each scale the size of its tiles [bytes].
-void addBytes(const GaussianMap<3>& map, const MapFileSize& size, Json& scales) {
+template <int D>
+void addBytes(const GaussianMap<D>& map, const MapFileSize& size, Json& scales) {
   for (int s = 0; s < map.scales(); ++s) {
     const auto index = static_cast<std::size_t>(s);
     const std::uintmax_t bytes = index < size.scale_tiles.size() ? size.scale_tiles[index] : 0;
@@ -111,11 +120,12 @@ std::vector<ErrorCurve> curvesOf(const MapMetadata& metadata) {
   return curves;
 }
 
-MapInfo readInfo(const std::string& path) {
-  MapInfo info;
-  info.map = loadAny(path, &info.metadata);
+template <int D>
+MapInfo<D> readInfo(const std::string& path) {
+  MapInfo<D> info;
+  info.map = loadMap<D>(path, &info.metadata);
   info.curves = curvesOf(info.metadata);
-  info.extent = extentOf<3>(info.map);
+  info.extent = extentOf<D>(info.map);
   info.scales = scalesOf(info.map);
   info.has_tile_sizes = isGmap(path);
   if (info.has_tile_sizes) {
@@ -129,20 +139,27 @@ MapInfo readInfo(const std::string& path) {
   return info;
 }
 
-Json jsonOf(const MapInfo& info, const std::string& path) {
-  const GaussianMap<3>& map = info.map;
-  Json json = {{"map", path},
-               {"resolution", map.options().resolution},
-               {"ratio", map.options().ratio},
-               {"noise", map.options().noise},
-               {"finest", map.acceptsScans() || !map.scale(0).moments.empty() ? "moments" : "gaussians"},
-               {"takes_scans", map.acceptsScans()},
-               {"final", info.metadata.count(kFinalEntry) > 0},
-               {"compressed", map.isCompressed()},
-               {"occupancy", map.hasOccupancy()},
-               {"scales", info.scales},
-               {"bytes", info.bytes}};
-  if (info.extent) json["extent"] = {{"low", vectorOf(info.extent->low)}, {"high", vectorOf(info.extent->high)}};
+/// Returns the area of the finest cells [m^2].
+double areaOf(const GaussianMap<2>& map) {
+  return static_cast<double>(map.cellCount(0)) * map.grid().side(0) * map.grid().side(0);
+}
+
+template <int D>
+Json jsonOf(const MapInfo<D>& info, const std::string& path) {
+  const GaussianMap<D>& map = info.map;
+  Json json = {{"map", path}};
+  if constexpr (D == 2) json.update(Json{{"dimensions", 2}, {"area", areaOf(map)}});
+  json.update(Json{{"resolution", map.options().resolution},
+                   {"ratio", map.options().ratio},
+                   {"noise", map.options().noise},
+                   {"finest", map.acceptsScans() || !map.scale(0).moments.empty() ? "moments" : "gaussians"},
+                   {"takes_scans", map.acceptsScans()},
+                   {"final", info.metadata.count(kFinalEntry) > 0},
+                   {"compressed", map.isCompressed()},
+                   {"occupancy", map.hasOccupancy()},
+                   {"scales", info.scales},
+                   {"bytes", info.bytes}});
+  if (info.extent) json["extent"] = {{"low", vectorOf<D>(info.extent->low)}, {"high", vectorOf<D>(info.extent->high)}};
   Json& free_text = json["metadata"] = Json::object();
   for (const auto& [name, value] : info.metadata) {
     const Json parsed = Json::parse(value, nullptr, false);
@@ -151,7 +168,8 @@ Json jsonOf(const MapInfo& info, const std::string& path) {
   return json;
 }
 
-void printScales(const MapInfo& info) {
+template <int D>
+void printScales(const MapInfo<D>& info) {
   std::printf("\n%5s %10s %10s %10s %12s %12s %12s\n", "scale", "cell [m]", "cells", "Gaussians", "weight", "bytes",
               "bytes/m^2");
   for (const Json& scale : info.scales) {
@@ -170,14 +188,13 @@ void printScales(const MapInfo& info) {
                 100.0 * scale["leaf_share"].get<double>());
 }
 
-void print(const MapInfo& info, const std::string& path) {
+template <int D>
+void print(const MapInfo<D>& info, const std::string& path) {
   std::printf("%s: %s, %s\n", path.c_str(), humanBytes(info.bytes).c_str(), stateOf(info.map, info.metadata).c_str());
+  if (D == 2) std::printf("planar, ");
   std::printf("ratio %d, noise floor %g m", info.map.options().ratio, info.map.options().noise);
-  if (info.extent) {
-    const Vector<3>&low = info.extent->low, &high = info.extent->high;
-    std::printf(", extent [%.2f %.2f %.2f] .. [%.2f %.2f %.2f] m", low.x(), low.y(), low.z(), high.x(), high.y(),
-                high.z());
-  }
+  if (info.extent) std::printf(", extent %s", textOf<D>(*info.extent).c_str());
+  if constexpr (D == 2) std::printf(", area of the finest cells %.4g m^2", areaOf(info.map));
   printScales(info);
   for (const ErrorCurve& curve : info.curves) {
     std::printf("error curve of scale %d, Gaussians: 95 %% / mean [m] ", curve.scale);
@@ -192,10 +209,11 @@ void print(const MapInfo& info, const std::string& path) {
   for (const Json& step : steps) std::printf("history: %s\n", sentenceOf(step).c_str());
 }
 
+template <int D>
 void run(const InfoCommand& command) {
   if (!command.plot.path.empty()) checkOutput(command.plot, {command.map});
   refuseOtherKinds(command.plot.path, "a picture", {".svg"});
-  const MapInfo info = readInfo(command.map);
+  const MapInfo<D> info = readInfo<D>(command.map);
   if (!command.plot.path.empty()) {
     if (info.curves.empty())
       throw std::runtime_error(command.map + ": has no error curves; use gaussmap refine to measure them");
@@ -217,7 +235,7 @@ void addInfo(CLI::App& app) {
   command.force(options->plot.force, "replace an existing plot");
   command.json(options->json);
   command.files({"--plot"}, {".svg"});
-  command.onRun([options] { run(*options); });
+  command.onRun([options] { forMap(options->map, [&](auto dimensions) { run<dimensions()>(*options); }); });
 }
 
 }  // namespace gaussmap::app

@@ -5,7 +5,6 @@
 
 #include "common/command.h"
 #include "common/report.h"
-#include "gaussmap/io/pcd/map_pcd.h"
 
 namespace gaussmap::app {
 
@@ -29,16 +28,13 @@ MapTask::MapTask(const MapTaskOptions& options, const std::vector<std::filesyste
   start_ = now();
 }
 
-GaussianMap<3> MapTask::load(const std::string& path) {
-  return loadAny(path, &metadata);
-}
-
 void MapTask::addStep(const char* command, const Json& more) {
   metadata.erase("error_curves");
   addHistory(metadata, historyStep(command, more));
 }
 
-void MapTask::save(const GaussianMap<3>& map, SaveOptions save) const {
+template <int D>
+void MapTask::save(const GaussianMap<D>& map, SaveOptions save) const {
   save.overwrite = options_.output.force;
   save.threads = options_.threads;
   gaussmap::save(options_.output.path, map, metadata, save);
@@ -61,19 +57,29 @@ void MapTask::report(const MapReport& report) const {
   std::cout << '\n';
 }
 
-void MapTask::report(const GaussianMap<3>& map) const {
+template <int D>
+void MapTask::report(const GaussianMap<D>& map) const {
   MapReport said;
   said.counts = perScale(map);
   said.scales = scalesOf(map);
   report(said);
 }
 
-void MapTask::report(const GaussianMap<3>& map, const GaussianMap<3>& whole, const Json& last) const {
+template <int D>
+void MapTask::report(const GaussianMap<D>& map, const GaussianMap<D>& whole, const Json& last) const {
   MapReport said;
   said.counts = perScale(map, whole);
   said.scales = scalesOf(map);
   said.last = last;
   report(said);
 }
+
+#define GAUSSMAP_INSTANTIATE(D)                                          \
+  template void MapTask::save(const GaussianMap<D>&, SaveOptions) const; \
+  template void MapTask::report(const GaussianMap<D>&) const;            \
+  template void MapTask::report(const GaussianMap<D>&, const GaussianMap<D>&, const Json&) const;
+GAUSSMAP_INSTANTIATE(2)
+GAUSSMAP_INSTANTIATE(3)
+#undef GAUSSMAP_INSTANTIATE
 
 }  // namespace gaussmap::app

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "commands/any_map.h"
 #include "common/command.h"
 #include "common/json.h"
 
@@ -39,9 +40,15 @@ class MapTask {
   MapTask(const MapTaskOptions& options, const std::vector<std::filesystem::path>& inputs);
   explicit MapTask(const MapTaskOptions& options) : MapTask(options, {options.map}) {}
 
-  /// Loads a map and its metadata, which save() writes again.
-  GaussianMap<3> load(const std::string& path);
-  GaussianMap<3> load() { return load(options_.map); }
+  /// Loads a map and its metadata, which save() writes again. See loadMap().
+  template <int D>
+  GaussianMap<D> load(const std::string& path) {
+    return loadMap<D>(path, &metadata);
+  }
+  template <int D>
+  GaussianMap<D> load() {
+    return load<D>(options_.map);
+  }
 
   MapMetadata metadata;
   /// Adds {"command", "version"} and the members of `more` to the history. Drops the error curves, because they
@@ -49,13 +56,16 @@ class MapTask {
   void addStep(const char* command, const Json& more = Json::object());
 
   /// Saves the map. The options of the command replace `save.overwrite` and `save.threads`.
-  void save(const GaussianMap<3>& map, SaveOptions save = {}) const;
+  template <int D>
+  void save(const GaussianMap<D>& map, SaveOptions save = {}) const;
 
   /// Prints the result as one line or as JSON. Call it after save().
   void report(const MapReport& report) const;
   /// The same with the scales of the map. `whole` is the map that it was made from; its counts are printed too.
-  void report(const GaussianMap<3>& map) const;
-  void report(const GaussianMap<3>& map, const GaussianMap<3>& whole, const Json& last = {}) const;
+  template <int D>
+  void report(const GaussianMap<D>& map) const;
+  template <int D>
+  void report(const GaussianMap<D>& map, const GaussianMap<D>& whole, const Json& last = {}) const;
 
   /// Size of the written map and of the input [bytes].
   std::uintmax_t bytes() const { return std::filesystem::file_size(options_.output.path); }

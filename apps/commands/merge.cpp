@@ -12,7 +12,6 @@
 #include "common/report.h"
 #include "gaussmap/core/error.h"
 #include "gaussmap/editing/transform_map.h"
-#include "gaussmap/io/pcd/map_pcd.h"
 
 namespace gaussmap::app {
 namespace {
@@ -31,13 +30,13 @@ Final maps, and maps that are or were moved or resampled, have no exact moments.
 holds Gaussians only; --exact refuses it. Compressed maps cannot be merged. The first map does not move. For each of
 the others, in the same order, give --transform with its pose in the frame of the first map.)"};
 
-std::string gridOf(const GaussianMap<3>& map) {
-  const MapOptions& options = map.options();
+std::string gridOf(const MapOptions& options) {
   return "cells of " + Json(options.resolution).dump() + " m, ratio " + std::to_string(options.ratio) + ", " +
          std::to_string(options.scales) + " scales, noise floor " + Json(options.noise).dump() + " m";
 }
 
-void requireExact(const GaussianMap<3>& map, const std::string& path, bool is_moved) {
+template <int D>
+void requireExact(const GaussianMap<D>& map, const std::string& path, bool is_moved) {
   if (is_moved)
     throw UsageError("--exact: a moved or resampled map has no exact moments; leave out --exact to merge Gaussians");
   if (!map.acceptsScans())
@@ -53,13 +52,14 @@ void warnOfOtherSystem(const MapMetadata& first, const MapMetadata& other, const
 }
 
 /// Loads the maps one after the other, transforms each into the frame and grid of the first map, and merges it.
-GaussianMap<3> merged(const MergeCommand& command, const Motions& motions, MapTask& task) {
+template <int D>
+GaussianMap<D> merged(const MergeCommand& command, const Motions& motions, MapTask& task) {
   const std::vector<std::string>& paths = command.maps;
-  GaussianMap<3> merged = task.load(paths.front());
+  GaussianMap<D> merged = task.load<D>(paths.front());
   if (command.exact) requireExact(merged, paths.front(), !motions.poses.empty());
   for (std::size_t i = 1; i < paths.size(); ++i) {
     MapMetadata metadata;
-    GaussianMap<3> next = loadAny(paths[i], &metadata);
+    GaussianMap<D> next = loadMap<D>(paths[i], &metadata);
     if (motions.poses.empty()) warnOfOtherSystem(task.metadata, metadata, paths[i]);
     if (command.exact) requireExact(next, paths[i], false);
     TransformOptions to;
@@ -69,19 +69,20 @@ GaussianMap<3> merged(const MergeCommand& command, const Motions& motions, MapTa
     if (next.options() == merged.options())
       to.grid.reset();
     else if (!command.resample)
-      throw FileError(paths[i], "has " + gridOf(next) + "; " + paths.front() + " has " + gridOf(merged) +
-                                    "; use --resample to convert it to this grid");
+      throw FileError(paths[i], "has " + gridOf(next.options()) + "; " + paths.front() + " has " +
+                                    gridOf(merged.options()) + "; use --resample to convert it to this grid");
     else if (command.exact)
       requireExact(next, paths[i], true);
     if (to.grid || !motions.poses.empty())
-      next = transformMap<3>(next, motions.poses.empty() ? Pose() : motions.poses[i - 1], to);
+      next = transformMap<D>(next, motions.poses.empty() ? Pose() : motions.poses[i - 1], to);
     MergeMapsOptions options;
     options.threads = command.threads;
-    merged = mergeMaps<3>(merged, next, options);
+    merged = mergeMaps<D>(merged, next, options);
   }
   return merged;
 }
 
+template <int D>
 void run(const MergeCommand& command) {
   std::vector<std::filesystem::path> inputs(command.maps.begin(), command.maps.end());
   const std::vector<std::filesystem::path> to_move(inputs.begin() + 1, inputs.end());
@@ -89,7 +90,7 @@ void run(const MergeCommand& command) {
   if (!command.motion.file.empty()) inputs.emplace_back(command.motion.file);
   MapTask task(command, inputs);
   if (count < 2) throw UsageError("merge needs at least two maps");
-  const GaussianMap<3> map = merged(command, motionsOf(command.motion, to_move), task);
+  const GaussianMap<D> map = merged<D>(command, motionsOf(command.motion, to_move), task);
 
   Json step = {{"maps", count}, {"exact", map.acceptsScans()}};
   if (!command.motion.transforms.empty()) step["transforms"] = command.motion.transforms;
@@ -121,7 +122,7 @@ void addMerge(CLI::App& app) {
   command.flag("--exact", options->exact, "refuse maps that cannot be merged exactly");
   addRunOptions(command, *options);
   command.files({"maps"}, {".gmap", ".pcd"});
-  command.onRun([options] { run(*options); });
+  command.onRun([options] { forMap(options->maps.front(), [&](auto dimensions) { run<dimensions()>(*options); }); });
 }
 
 }  // namespace gaussmap::app

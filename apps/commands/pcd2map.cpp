@@ -17,8 +17,8 @@ namespace {
 
 const Help kPcd2mapHelp = {
     "Build a map from scans", "gaussmap pcd2map scans/*.pcd -o street.gmap --resolution 0.2 --budget 3",
-    R"(Reads PCD, PLY, LAS, LAZ, E57, .bin (KITTI, nuScenes), text, PTS, PTX, and recordings of ROS (MCAP, rosbag2, bags of
-ROS 1). The pose of a scan is that in its file: VIEWPOINT, the pose in an E57 or PTX file, tf or odometry of a
+    R"(Reads PCD, PLY, LAS, LAZ, E57, .bin (KITTI, nuScenes), text, PTS, PTX, logs of CARMEN, and recordings of ROS (MCAP,
+rosbag2, bags of ROS 1). The pose of a scan is that in its file: VIEWPOINT, the pose in an E57 or PTX file or a log, tf or odometry of a
 recording. --poses replaces it: TUM (t x y z qx qy qz qw), KITTI (12 numbers), CSV with a header line, and others.
 Poses are matched to scans by name, time or number, else by order. gaussmap scans shows the result. With --frame map,
 the points are already in the map frame. gaussmap assumes the same for LAS and LAZ files, unless --poses is given.
@@ -28,11 +28,16 @@ of all scans. Coarse cells with new points are rebuilt within --budget (default:
 or else the present number of Gaussians per cell). Cells keep their occupancy, and new cells count as occupied.
 Readers see either the old or the new file.
 
---online adds one scan after the other, marks cells that the laser sees through as free, and deletes what has moved.)"};
+--online adds one scan after the other, marks cells that the laser sees through as free, and deletes what has moved.
 
+--planar builds a map in the plane z = 0 from scans of a planar laser: files of any kind, logs of CARMEN, LaserScan
+messages of recordings. 3-D scans need --slice: points between two heights of the map frame. With --online, only the
+nearest of these points in every direction is used. --update keeps the kind of the map.)"};
+
+template <int D>
 void run(const Pcd2mapOptions& options) {
   try {
-    const Grid<3> grid(options.map);
+    const Grid<D> grid(options.map);
   } catch (const std::invalid_argument& error) {
     throw UsageError(std::string("--") + error.what());
   }
@@ -44,22 +49,21 @@ void run(const Pcd2mapOptions& options) {
   checkOnline(options.online, options.budget, options.output, inputs);
   checkMemory(options);
 
-  accumulateOptions(options.input, options.map.resolution, 0);  // checks the options before files are read
+  AccumulateOptions reading = accumulateOptions(options.input, options.map.resolution, options.budget.refine.threads);
+  if (D == 2) reading = withSlice(reading, options.slice, options.input.crop);
   const FileScans scans =
       openScans(options.input, options.budget.refine.threads, options.online.on ? "option --online" : nullptr);
   noteDroppedFields(scans);
   if (const std::vector<FileSystem> systems = coordinateSystemsOf(scans); !systems.empty())
     task.metadata[kCoordinateSystemEntry] = systems.front().system;
-  const AccumulateOptions reading =
-      accumulateOptions(options.input, options.map.resolution, options.budget.refine.threads);
-  const WrittenMap written = !options.max_memory.empty() ? buildWithinMemory(options, scans, reading, task)
-                             : options.online.on         ? buildOnline(options, scans, reading, task)
-                                                         : buildInMemory(options, scans, reading, task);
+  const WrittenMap written = !options.max_memory.empty() ? buildWithinMemory<D>(options, scans, reading, task)
+                             : options.online.on         ? buildOnline<D>(options, scans, reading, task)
+                                                         : buildInMemory<D>(options, scans, reading, task);
   warnOfCoordinates(scans, options.map.resolution);
   MapReport report;
   std::vector<std::size_t> gaussians;
   for (const Json& scale : written.scales) gaussians.push_back(scale["gaussians"].get<std::size_t>());
-  report.before = summaryOf(scans, written.counts) + ", ";
+  report.before = summaryOf(scans, written.counts, options.slice) + ", ";
   report.counts = perScale(gaussians);
   report.scales = written.scales;
   report.first = {{"scans", scans.size()}, {"points", countsJson(written.counts)}};
@@ -72,6 +76,8 @@ void addOptions(Command& command, Pcd2mapOptions& options) {
   command.text("-o,--output", options.output.path, "map file to write (.gmap)");
   command.force(options.output.force);
   command.text("--update", options.update, "map file to add the scans to (.gmap)");
+  command.flag("--planar", options.planar, "build a planar map (2-D): the points lose their heights");
+  addSlice(command, options.slice);
   command.number("--resolution", options.map.resolution, "side of the finest cells [m]");
   command.number("--scales", options.map.scales, "number of scales");
   command.number("--ratio", options.map.ratio, "ratio of the cell sides of two neighbouring scales").rare();
@@ -104,7 +110,9 @@ void addPcd2map(CLI::App& app) {
   command.onRun([command, options] {
     const bool updates = command.isGiven("--update");
     if (!updates && !command.isGiven("--output")) throw UsageError("--output is required (or --update MAP)");
-    if (!updates) return run(*options);
+    if (!updates && !options->planar && !options->slice.empty())
+      throw UsageError("--slice: only for planar maps; add --planar");
+    if (!updates) return forDimensions(options->planar ? 2 : 3, [&](auto d) { run<d()>(*options); });
     if (command.isGiven("--budget")) options->update_budget = options->budget.budget;
     updateFromScans(*options);
   });

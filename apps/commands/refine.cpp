@@ -21,10 +21,11 @@ const Help kRefineHelp = {
     R"(The coarse scales are rebuilt from the finest scale. The result equals that of pcd2map with the same budget and
 seed. A compressed map cannot be refined, because its finest scale is incomplete.)"};
 
+template <int D>
 void run(RefineCommand command) {
   MapTask task(command);
   checkBudget(command.budget);
-  GaussianMap<3> map = task.load();
+  GaussianMap<D> map = task.load<D>();
   if (map.isCompressed())
     throw std::runtime_error(command.map + ": is compressed, so its finest scale is incomplete; use the original map");
   command.budget.refine.threads = command.threads;
@@ -41,7 +42,7 @@ void addRefine(CLI::App& app) {
   addMapToMap(command, *options);
   addBudgetOptions(command, options->budget);
   addRunOptions(command, *options);
-  command.onRun([options] { run(*options); });
+  command.onRun([options] { forMap(options->map, [&](auto dimensions) { run<dimensions()>(*options); }); });
 }
 
 }  // namespace gaussmap::app

@@ -6,14 +6,15 @@
 #include <iostream>
 #include <memory>
 
+#include "commands/any_map.h"
 #include "commands/commands.h"
+#include "commands/planar_input.h"
 #include "commands/register/guesses.h"
 #include "commands/scan_input.h"
 #include "common/command.h"
 #include "common/json.h"
 #include "common/report.h"
 #include "core/accept_points.h"
-#include "gaussmap/io/pcd/map_pcd.h"
 #include "gaussmap/io/scans/file_scans.h"
 #include "gaussmap/registration/registration.h"
 #include "simulation/trajectory.h"
@@ -37,6 +38,9 @@ scans, are ignored. A scan without a pose of its own starts at the pose found fo
 A scan without usable points, a damaged file, or a scan that is not found on the map, gets a line on stderr, and the
 others are registered. The exit code is then 1.
 
+In a planar map, only x, y and the heading are searched. The height and the tilt of the pose are those of the guess.
+3-D scans need --slice: the points between two heights of the map frame, seen from the guess.
+
 Maps can be given in place of scans. A map in place of a scan starts at the identity (it is not moved), unless --guess
 or --poses is given.)"};
 
@@ -47,6 +51,7 @@ struct RegisterCommand {
   std::string tum;
   bool force = false;
   RegistrationOptions options;
+  Slice slice;  // of 3-D scans, for a planar map
   bool json = false;
 };
 
@@ -79,9 +84,10 @@ void print(const Subject& subject, const RegistrationResult& result) {
 }
 
 /// The scans and maps to register, and what their registration needs.
+template <int D>
 struct Registration {
   const RegisterCommand& command;
-  const GaussianMap<3>& map;
+  const GaussianMap<D>& map;
   std::vector<Subject> subjects;
   FileScans scans;                   // those of the subjects that are scans and can be opened
   std::vector<std::size_t> scan_of;  // per subject: index in `scans`
@@ -98,24 +104,41 @@ FileScans scansOf(const std::vector<Subject>& subjects, const FileOptions& optio
   return FileScans(std::move(scans), ScanFrame::Sensor, options);
 }
 
+/// Returns a scan with the given pose without the points that a planar map does not show. Throws FileError if it is a
+/// 3-D scan, and there is no slice.
+Scan planarPart(Scan scan, const Pose& guess, const Subject& subject, const Slice& slice) {
+  scan.pose = guess;
+  try {
+    const Scan level = detail::levelled(scan, planarOptions(slice, {}));
+    for (std::size_t i = 0; i < scan.points.size(); ++i)
+      if (!isReturn(level.points[i])) scan.points[i] = level.points[i];
+  } catch (const std::invalid_argument& error) {
+    throw FileError(subject.path, (subject.name.empty() ? "" : subject.name + ": ") + error.what());
+  }
+  return scan;
+}
+
 /// Registers a scan or a map. Throws FileError if the file is damaged or has no usable point.
-RegistrationResult registerOne(const Registration& all, std::size_t i, const Pose& guess) {
+template <int D>
+RegistrationResult registerOne(const Registration<D>& all, std::size_t i, const Pose& guess) {
   const Subject& subject = all.subjects[i];
   const RegisterCommand& command = all.command;
   if (subject.is_map) {
-    const GaussianMap<3> source = loadAny(subject.path);
+    const GaussianMap<D> source = loadMap<D>(subject.path);
     if (source.empty()) throw FileError(subject.path, "the map is empty");
     return registerMap(source, all.map, guess, command.options);
   }
   Scan scan = all.scans.read(all.scan_of[i]);
   detail::dropPoints(detail::limitsOf(accumulateOptions(command.input, all.map.grid().side(0), 0)), scan);
+  if (D == 2) scan = planarPart(std::move(scan), guess, subject, command.slice);
   if (std::none_of(scan.points.begin(), scan.points.end(), isReturn))
     throw FileError(subject.path, (subject.name.empty() ? "" : subject.name + ": ") + "no usable point");
   return registerScan(scan.points, all.map, guess, command.options);
 }
 
 /// Tries the guesses until a part of the scan lies on the map. Throws FileError if none does.
-RegistrationResult findScan(const Registration& all, std::size_t i, const std::vector<Pose>& guesses) {
+template <int D>
+RegistrationResult findScan(const Registration<D>& all, std::size_t i, const std::vector<Pose>& guesses) {
   const Subject& subject = all.subjects[i];
   for (const Pose& guess : guesses) {
     RegistrationResult result = registerOne(all, i, guess);
@@ -136,7 +159,10 @@ void warnIfDoubtful(const Subject& subject, const RegistrationResult& result) {
        " % of the scan lies on the map, so the pose may be wrong; check it, or use a better --guess or --poses");
 }
 
+template <int D>
 void run(const RegisterCommand& command) {
+  checkSlice(command.slice);
+  if (D == 3 && !command.slice.empty()) throw UsageError("--slice: only for planar maps");
   const std::filesystem::path map_path = command.inputs.back();
   const std::vector<std::filesystem::path> files = listScans({command.inputs.begin(), std::prev(command.inputs.end())});
   if (!command.tum.empty()) {
@@ -153,11 +179,11 @@ void run(const RegisterCommand& command) {
   RegisterGuesses guesses(subjects, options, command.guess);
   if (!options.poses.empty()) note(guesses.description());
   for (const std::string& warning : guesses.warnings()) warn(warning);
-  const GaussianMap<3> map = loadAny(map_path);
+  const GaussianMap<D> map = loadMap<D>(map_path);
   if (map.empty()) throw FileError(map_path, "the map is empty, so no scan can be registered with it");
   std::vector<std::size_t> scan_of;
   FileScans scans = scansOf(subjects, options.files, scan_of);
-  const Registration all{command, map, std::move(subjects), std::move(scans), std::move(scan_of)};
+  const Registration<D> all{command, map, std::move(subjects), std::move(scans), std::move(scan_of)};
 
   const std::vector<double> times = guesses.times();
   Json found = Json::array();
@@ -219,13 +245,14 @@ void addRegister(CLI::App& app) {
               "robust kernel: halves the cost of a residual of this many standard deviations")
       .rare();
   addRangeOptions(command, options->input);
+  addSlice(command, options->slice);
   command.threads(options->options.threads);
   command.json(options->json);
   std::vector<std::string> endings = scanEndings();
   endings.emplace_back(".gmap");
   command.files({"inputs"}, endings);
   command.files({"--tum"});
-  command.onRun([options] { run(*options); });
+  command.onRun([options] { forMap(options->inputs.back(), [&](auto dimensions) { run<dimensions()>(*options); }); });
 }
 
 }  // namespace gaussmap::app

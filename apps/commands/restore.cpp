@@ -28,27 +28,33 @@ const Help kRestoreHelp = {
 rebuilt with as many Gaussians as before, but at least one per cell. Do not restore a cluster twice: its points
 would count twice.)"};
 
-std::function<bool(const Vector<3>&)> region(const std::vector<double>& box) {
-  if (box.empty()) return [](const Vector<3>&) { return true; };
-  const Vector<3> low(box[0], box[1], box[2]), high(box[3], box[4], box[5]);
+template <int D>
+std::function<bool(const Vector<D>&)> region(const std::vector<double>& box) {
+  if (box.empty()) return [](const Vector<D>&) { return true; };
+  if (box.size() != 2 * D)
+    throw UsageError(D == 2 ? "--box: a planar map has no heights; give x0 y0 x1 y1"
+                            : "--box: " + std::to_string(box.size()) + " numbers found, expected x0 y0 z0 x1 y1 z1");
+  const Eigen::Map<const Vector<D>> first(box.data()), second(box.data() + D);
+  const Vector<D> low = first, high = second;
   if ((low.array() > high.array()).any())
-    throw UsageError(
-        "--box: no coordinate of the first corner may be above that of the second corner: x0 y0 z0 x1 y1 z1");
+    throw UsageError(std::string("--box: no coordinate of the first corner may be above that of the second corner: ") +
+                     (D == 2 ? "x0 y0 x1 y1" : "x0 y0 z0 x1 y1 z1"));
   return
-      [low, high](const Vector<3>& p) { return !(p.array() < low.array()).any() && !(p.array() > high.array()).any(); };
+      [low, high](const Vector<D>& p) { return !(p.array() < low.array()).any() && !(p.array() > high.array()).any(); };
 }
 
+template <int D>
 void run(const RestoreCommand& command) {
-  const auto isInside = region(command.box);
+  const auto isInside = region<D>(command.box);
   MapTask task(command, {command.map, command.removed});
-  const GaussianMap<3> old = task.load();
+  const GaussianMap<D> old = task.load<D>();
   if (!old.acceptsScans())
     throw FileError(command.map, std::string(old.isCompressed() ? "is compressed" : "holds Gaussians only") +
                                      ", so clusters cannot be restored exactly; use a map with moments");
-  const std::vector<RemovedCluster<3>> removed = readRemoved(command.removed);
-  RestoredMap restored;
+  const std::vector<RemovedCluster<D>> removed = readRemoved<D>(command.removed);
+  RestoredMap<D> restored;
   try {
-    restored = restoreClusters(old, removed, isInside, command.threads);
+    restored = restoreClusters<D>(old, removed, isInside, command.threads);
   } catch (const std::invalid_argument& error) {
     throw FileError(command.removed, error.what());
   }
@@ -76,12 +82,13 @@ void addRestore(CLI::App& app) {
   command.text("removed", options->removed, "deleted clusters, written by pcd2map --online --removed (.pcd)")
       .required();
   addMapOutput(command, *options);
-  command.numbers("--box", options->box, 6, -1e12, 1e12,
-                  "restore only clusters whose mean is in this box: x0 y0 z0 x1 y1 z1 [m]");
+  command.numbers(
+      "--box", options->box, 4, 6, -1e12, 1e12,
+      "restore only clusters whose mean is in this box: x0 y0 z0 x1 y1 z1, or x0 y0 x1 y1 for a planar map [m]");
   addRunOptions(command, *options);
   command.files({"map"}, {".gmap"});
   command.files({"removed"}, {".pcd"});
-  command.onRun([options] { run(*options); });
+  command.onRun([options] { forMap(options->map, [&](auto dimensions) { run<dimensions()>(*options); }); });
 }
 
 }  // namespace gaussmap::app

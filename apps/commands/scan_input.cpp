@@ -18,14 +18,15 @@
 namespace gaussmap::app {
 
 std::vector<std::string> scanEndings() {
-  return {".pcd", ".pcd.gz", ".ply", ".las", ".laz", ".e57",  ".bin", ".xyz",
-          ".pts", ".ptx",    ".csv", ".txt", ".asc", ".mcap", ".db3", ".bag"};
+  return {".pcd", ".pcd.gz", ".ply", ".las", ".laz",  ".e57", ".bin", ".xyz", ".pts",
+          ".ptx", ".csv",    ".txt", ".asc", ".mcap", ".db3", ".bag", ".log", ".log.gz"};
 }
 
 void addScanPaths(Command& command, ScanInput& input) {
   command
       .texts("scans", input.paths,
-             "files of scans (PCD, PLY, LAS, LAZ, E57, .bin, text, MCAP, db3, bag), or directories of them (in natural "
+             "files of scans (PCD, PLY, LAS, LAZ, E57, .bin, text, CARMEN, MCAP, db3, bag), or directories of them (in "
+             "natural "
              "order)")
       .required();
   command.files({"scans"}, scanEndings());

@@ -27,13 +27,14 @@ also works on final and compressed maps. To rebuild the coarse scales from the f
 Every cell keeps at least one Gaussian.)"};
 
 /// Simplifies the map within the limit. Adds `step`, completed with the limit, to the history.
-GaussianMap<3> simplified(const GaussianMap<3>& map, const SimplifyCommand& command, MapMetadata& metadata, Json step) {
+template <int D>
+GaussianMap<D> simplified(const GaussianMap<D>& map, const SimplifyCommand& command, MapMetadata& metadata, Json step) {
   const BudgetInput& limit = command.limit;
   const SimplifyOptions options{mergeCost(limit), command.threads};
   Budget budget = budgetOf(limit, map, 0);
   recordStep(metadata, simplifyStep(budget, options, detailsOf(limit, std::move(step))));
   measureFile(budget, metadata, options.threads);
-  RefineResult<3> result = simplify<3>(map, budget, options);
+  RefineResult<D> result = simplify<D>(map, budget, options);
   for (const NotReached& scale : result.not_reached)
     warn("scale " + std::to_string(scale.scale) +
          " exceeds --max-error before merging: 95 % of its samples lie within " + Json(scale.q95).dump() +
@@ -41,15 +42,16 @@ GaussianMap<3> simplified(const GaussianMap<3>& map, const SimplifyCommand& comm
   return std::move(result.map);
 }
 
+template <int D>
 void run(const SimplifyCommand& command) {
   MapTask task(command);
   const BudgetInput& limit = command.limit;
   if (!command.has_budget && limit.max_gaussians.empty() && limit.max_bytes.empty() && limit.max_error == 0.0)
     throw UsageError("simplify needs one of --budget, --max-gaussians, --max-bytes and --max-error");
   checkBudget(limit);
-  const GaussianMap<3> old = task.load();
+  const GaussianMap<D> old = task.load<D>();
   task.metadata.erase("error_curves");  // they describe the old map
-  const GaussianMap<3> map = simplified(old, command, task.metadata, historyStep("simplify"));
+  const GaussianMap<D> map = simplified(old, command, task.metadata, historyStep("simplify"));
   task.save(map);
   task.report(map, old, {{"bytes_before", task.bytesBefore()}});
 }
@@ -65,7 +67,7 @@ void addSimplify(CLI::App& app) {
   addRunOptions(command, *options);
   command.onRun([options, command] {
     options->has_budget = command.isGiven("--budget");
-    run(*options);
+    forMap(options->map, [&](auto dimensions) { run<dimensions()>(*options); });
   });
 }
 

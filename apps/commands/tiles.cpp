@@ -7,6 +7,7 @@
 #include "commands/map_task.h"
 #include "common/command.h"
 #include "common/report.h"
+#include "gaussmap/core/error.h"
 #include "gaussmap/io/export/map_tiles.h"
 #include "gaussmap/io/pcd/map_pcd.h"
 
@@ -46,7 +47,11 @@ void warnOfPrecision(const std::string& folder, const WrittenTiles& tiles, const
 void toTiles(const TilesCommand& command) {
   if (const std::string ending = endingOf(command.output.path); ending == ".gmap" || ending == ".pcd")
     throw UsageError(command.output.path + ": tiles of a map are a directory, whose name must not end in " + ending);
-  const GaussianMap<3> map = loadAny(command.map);
+  if (dimensionsOf(command.map) == 2)
+    throw FileError(command.map,
+                    "is a planar map, but tiles are for localisation with the points of a 3-D lidar; gaussmap export "
+                    "writes the Gaussians as one PCD file");
+  const GaussianMap<3> map = loadMap<3>(command.map);
   checkScale("--scale", command.scale, map.scales());
   TilesOptions to;
   to.size = command.size;

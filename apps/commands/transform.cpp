@@ -24,6 +24,7 @@ const Help kTransformHelp = {
     R"(Every Gaussian is moved into the cell that contains its new mean. The result has no moments, so it accepts no
 more scans. Moving it back (--inverse) restores the means and weights of the finest scale.)"};
 
+template <int D>
 void run(const TransformCommand& command) {
   std::vector<std::filesystem::path> inputs = {command.map};
   if (!command.motion.file.empty()) inputs.emplace_back(command.motion.file);
@@ -35,7 +36,7 @@ void run(const TransformCommand& command) {
   options.threads = command.threads;
   options.covariance = motions.covariance;
   if (command.inverse && options.covariance) options.covariance = covarianceOfInverse(given, *options.covariance);
-  const GaussianMap<3> map = transformMap<3>(task.load(), command.inverse ? given.inverse() : given, options);
+  const GaussianMap<D> map = transformMap<D>(task.load<D>(), command.inverse ? given.inverse() : given, options);
 
   Json step = {{"inverse", command.inverse}};
   const Eigen::Quaterniond q(given.rotation.toRotationMatrix());
@@ -58,7 +59,7 @@ void addTransform(CLI::App& app) {
   addMotionOptions(command, options->motion);
   command.flag("--inverse", options->inverse, "apply the inverse of the given pose");
   addRunOptions(command, *options);
-  command.onRun([options] { run(*options); });
+  command.onRun([options] { forMap(options->map, [&](auto dimensions) { run<dimensions()>(*options); }); });
 }
 
 }  // namespace gaussmap::app

@@ -24,7 +24,7 @@ struct ViewCommand {
   std::optional<int> scale;
   bool leaves = false;
   std::string colour;  // empty: the default
-  std::string up = "z", from = "iso", size = "1200x800";
+  std::string up = "z", from, size = "1200x800";
   std::vector<double> at;
   Output png;
   ViewOptions view;

@@ -20,11 +20,29 @@ Box<3> boxOf(const std::string& option, const std::vector<double>& n) {
   return box;
 }
 
-std::string textOf(const Box<3>& box) {
-  const auto corner = [](const Vector<3>& p) {
-    return "[" + formatted("%.2f ", p.x()) + formatted("%.2f ", p.y()) + formatted("%.2f]", p.z());
+template <int D>
+Box<D> mapBoxOf(const std::string& option, const std::vector<double>& n) {
+  const Box<3> box = boxOf(option, n);
+  if constexpr (D == 2) {
+    if (n.size() != 4) throw UsageError(option + ": a planar map has no heights; give x0 y0 x1 y1");
+    return {box.low.head<2>(), box.high.head<2>()};
+  } else {
+    return box;
+  }
+}
+template Box<2> mapBoxOf<2>(const std::string&, const std::vector<double>&);
+template Box<3> mapBoxOf<3>(const std::string&, const std::vector<double>&);
+
+template <int D>
+std::string textOf(const Box<D>& box) {
+  const auto corner = [](const Vector<D>& p) {
+    std::string text = "[";
+    for (int axis = 0; axis < D; ++axis) text += (axis > 0 ? " " : "") + formatted("%.2f", p(axis));
+    return text + "]";
   };
   return corner(box.low) + " .. " + corner(box.high) + " m";
 }
+template std::string textOf(const Box<2>&);
+template std::string textOf(const Box<3>&);
 
 }  // namespace gaussmap::app

@@ -35,7 +35,8 @@ void addHistory(MapMetadata& metadata, const Json& step) {
   metadata["history"] = history.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-Json scalesOf(const GaussianMap<3>& map) {
+template <int D>
+Json scalesOf(const GaussianMap<D>& map) {
   Json scales = Json::array();
   for (int s = 0; s < map.scales(); ++s)
     scales.push_back({{"scale", s},
@@ -45,5 +46,7 @@ Json scalesOf(const GaussianMap<3>& map) {
                       {"weight", map.weight(s)}});
   return scales;
 }
+template Json scalesOf(const GaussianMap<2>&);
+template Json scalesOf(const GaussianMap<3>&);
 
 }  // namespace gaussmap::app

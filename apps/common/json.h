@@ -21,6 +21,7 @@ Json historyStep(const char* command, const Json& more = Json::object());
 void addHistory(MapMetadata& metadata, const Json& step);
 
 /// Returns side, cells, Gaussians and weight of every scale.
-Json scalesOf(const GaussianMap<3>& map);
+template <int D>
+Json scalesOf(const GaussianMap<D>& map);
 
 }  // namespace gaussmap::app

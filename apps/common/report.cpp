@@ -55,20 +55,26 @@ std::string perScale(const std::vector<std::size_t>& counts) {
   return text;
 }
 
-std::string perScale(const GaussianMap<3>& map) {
+template <int D>
+std::string perScale(const GaussianMap<D>& map) {
   std::vector<std::size_t> counts;
   counts.reserve(std::size_t(map.scales()));
   for (int s = 0; s < map.scales(); ++s) counts.push_back(map.gaussianCount(s));
   return perScale(counts);
 }
 
-std::string perScale(const GaussianMap<3>& map, const GaussianMap<3>& whole) {
+template <int D>
+std::string perScale(const GaussianMap<D>& map, const GaussianMap<D>& whole) {
   std::string text;
   for (int s = 0; s < map.scales(); ++s)
     text +=
         (s > 0 ? " / " : "") + std::to_string(map.gaussianCount(s)) + " of " + std::to_string(whole.gaussianCount(s));
   return text;
 }
+template std::string perScale(const GaussianMap<2>&);
+template std::string perScale(const GaussianMap<3>&);
+template std::string perScale(const GaussianMap<2>&, const GaussianMap<2>&);
+template std::string perScale(const GaussianMap<3>&, const GaussianMap<3>&);
 
 void writeText(const std::filesystem::path& path, const std::string& text) {
   detail::AtomicFile file(path);

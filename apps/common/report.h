@@ -31,8 +31,10 @@ std::string csvQuoted(std::string text);
 /// "526732 / 11327 / 129", finest first.
 std::string perScale(const std::vector<std::size_t>& counts);
 /// The same for the Gaussians of a map. With `whole`, the map that it was made from: "1000 of 526732 / 20 of 11327".
-std::string perScale(const GaussianMap<3>& map);
-std::string perScale(const GaussianMap<3>& map, const GaussianMap<3>& whole);
+template <int D>
+std::string perScale(const GaussianMap<D>& map);
+template <int D>
+std::string perScale(const GaussianMap<D>& map, const GaussianMap<D>& whole);
 
 /// Writes a text file atomically. Throws FileError if it cannot be written.
 void writeText(const std::filesystem::path& path, const std::string& text);

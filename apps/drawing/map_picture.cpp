@@ -39,13 +39,16 @@ std::string colourOf(double place) {
 /// The heights [m] of the first and the last colour.
 struct HeightRange {
   double low, high;
+  bool empty() const { return !(low < high); }  // no colour shows a height
   double placeOf(double height) const { return (height - low) / (high - low); }
 };
 
 HeightRange heightRange(const std::vector<Panel>& panels) {
   std::vector<double> tops;
   for (const Panel& panel : panels)
-    for (const Ellipse& ellipse : panel.ellipses) tops.push_back(ellipse.top);
+    for (const Ellipse& ellipse : panel.ellipses)
+      if (ellipse.colour.empty()) tops.push_back(ellipse.top);
+  if (tops.empty()) return {0.0, 0.0};
   std::sort(tops.begin(), tops.end());
   const std::size_t last = tops.size() - 1;
   const HeightRange range{tops[last / 100], tops[last - last / 100]};
@@ -80,7 +83,7 @@ Layout layOut(const std::vector<Panel>& panels, const Box<2>& window) {
 
 /// Draws the borders of the cells, unless they are so close that they would look like a grey area.
 void drawGrid(Svg& svg, const PlanView& view, double side) {
-  if (side * view.scale < 4.0) return;
+  if (side * view.scale < 4.0) return;  // also without a grid
   const Box<2>& window = view.window;
   svg << "<path stroke='#d8d8d8' stroke-width='.6' d='";
   for (double k = std::ceil(window.low.x() / side); k * side <= window.high.x(); ++k)
@@ -96,7 +99,19 @@ void drawEllipse(Svg& svg, const PlanView& view, const HeightRange& heights, con
   const bool thin = ellipse.width * view.scale < kThin;
   svg << "<ellipse cx='" << x << "' cy='" << y << "' rx='" << ellipse.axis.norm() * view.scale << "' ry='"
       << ellipse.width * view.scale << "' transform='rotate(" << degrees << ' ' << x << ' ' << y << ")' color='"
-      << colourOf(heights.placeOf(ellipse.top)) << (thin ? "' fill-opacity='.7'/>\n" : "'/>\n");
+      << (ellipse.colour.empty() ? colourOf(heights.placeOf(ellipse.top)) : ellipse.colour)
+      << (thin ? "' fill-opacity='.7'/>\n" : "'/>\n");
+}
+
+void drawSquares(Svg& svg, const PlanView& view, const std::vector<Box<2>>& squares) {
+  if (squares.empty()) return;
+  svg << "<path fill='none' stroke='black' stroke-width='.9' d='";
+  for (const Box<2>& square : squares) {
+    const Vector<2> size = (square.high - square.low) * view.scale;
+    svg << 'M' << view.x(square.low.x()) << ' ' << view.y(square.high.y()) << 'h' << size.x() << 'v' << size.y() << 'h'
+        << -size.x() << 'z';
+  }
+  svg << "'/>\n";
 }
 
 void drawPanel(Svg& svg, const PlanView& view, const HeightRange& heights, Panel& panel) {
@@ -106,10 +121,22 @@ void drawPanel(Svg& svg, const PlanView& view, const HeightRange& heights, Panel
   svg.text(0, kTitle - 5, panel.title);
   svg << "<g transform='translate(0 " << kTitle << ")'><g clip-path='url(#window)'>\n";
   drawGrid(svg, view, panel.cell_side);
+  drawSquares(svg, view, panel.squares);
   svg << "<g fill='currentColor' fill-opacity='.16' stroke='currentColor' stroke-width='.7'>\n";
   for (const Ellipse& ellipse : panel.ellipses) drawEllipse(svg, view, heights, ellipse);
   svg << "</g></g>\n<rect width='" << view.width() << "' height='" << view.height()
       << "' fill='none' stroke='#999' stroke-width='.8'/></g>\n";
+}
+
+void drawKeys(Svg& svg, const std::vector<ColourKey>& keys, double right, double y) {
+  double x = right;
+  for (auto key = keys.rbegin(); key != keys.rend(); ++key) {
+    x -= kCharacter * static_cast<double>(key->text.size());
+    svg.text(x, y + 8, key->text);
+    svg << "<rect x='" << x - 18 << "' y='" << y - 1 << "' width='12' height='9' fill='" << key->colour
+        << "' fill-opacity='" << (key->is_outline ? "0" : ".25") << "' stroke='" << key->colour << "'/>\n";
+    x -= 36;
+  }
 }
 
 void drawColourBar(Svg& svg, const HeightRange& heights, double right, double y) {
@@ -147,7 +174,7 @@ Ellipse ellipseFromAbove(const Gaussian<3>& gaussian, double sigma) {
       principalAxes<2>({gaussian.mean.head<2>(), gaussian.cov.topLeftCorner<2, 2>(), gaussian.weight});
   const Vector<2> lengths = sigma * axes.variances.cwiseMax(0.0).cwiseSqrt();
   return {gaussian.mean.head<2>(), lengths(1) * axes.directions.col(1), lengths(0),
-          gaussian.mean.z() + sigma * std::sqrt(gaussian.cov(2, 2))};
+          gaussian.mean.z() + sigma * std::sqrt(gaussian.cov(2, 2)), ""};
 }
 
 void drawMaps(std::vector<Panel> panels, const Box<2>& window, const std::filesystem::path& path) {
@@ -166,7 +193,10 @@ void drawMaps(std::vector<Panel> panels, const Box<2>& window, const std::filesy
   }
   const double legend = layout.all_height - kLegend + 4;
   layout.view.drawScaleBar(svg, kMargin, legend, std::max(layout.view.width(), kMinWidth) / 5);
-  drawColourBar(svg, heights, layout.all_width - kMargin, legend);
+  if (!heights.empty()) drawColourBar(svg, heights, layout.all_width - kMargin, legend);
+  const auto with_keys =
+      std::find_if(panels.begin(), panels.end(), [](const Panel& panel) { return !panel.keys.empty(); });
+  if (with_keys != panels.end()) drawKeys(svg, with_keys->keys, layout.all_width - kMargin, legend);
   svg.save(path);
 }
 

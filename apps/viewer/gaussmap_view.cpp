@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "commands/any_map.h"
 #include "commands/scan_input.h"
 #include "commands/view_options.h"
 #include "common/report.h"
@@ -42,8 +43,9 @@ std::vector<Number> numbersIn(const std::string& text, char between, std::size_t
 }
 
 ViewPoint viewPoint(const ViewCommand& command, const Vector<3>& up) {
-  if (command.from == "iso") return {};
-  if (command.from == "top") return viewFromAbove(up);
+  const bool is_default = command.from.empty(), is_planar = is_default && dimensionsOf(command.map) == 2;
+  if (command.from == "top" || is_planar) return viewFromAbove(up);
+  if (command.from == "iso" || is_default) return {};
   const std::vector<double> numbers = numbersIn<double>(command.from, ',', 3);
   ViewPoint view;
   if (!numbers.empty()) view.direction = {numbers[0], numbers[1], numbers[2]};
@@ -98,7 +100,7 @@ void run(ViewCommand command) {
     checkForSegments(command);
     scene.map = loadSegmentsPcd(command.map);
   } else {
-    GaussianMap<3> map = loadAny(command.map);
+    GaussianMap<3> map = loadInSpace(command.map);
     if (map.empty()) throw std::runtime_error(command.map + ": the map is empty, so there is nothing to show");
     setScale(command, map, view);
     scene.map = std::move(map);

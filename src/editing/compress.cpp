@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/check.h"
+#include "core/in_space.h"
 #include "core/parallel.h"
 #include "editing/ellipsoid.h"
 #include "editing/keep_cells.h"
@@ -20,9 +21,10 @@ using namespace detail;
 namespace {
 
 /// Decides which cells of a scale represent the finest Gaussians under them (`data_`) well enough, see compress().
+template <int D>
 class CellCoverage {
  public:
-  CellCoverage(const GaussianMap<3>& map, double max_error, const CompressOptions& options)
+  CellCoverage(const GaussianMap<D>& map, double max_error, const CompressOptions& options)
       : map_(map), max_error_(max_error), options_(options), data_(map.gaussianCount(0)) {
     parallelFor(data_.size(), options.threads, 1024, [&](std::size_t i) { data_[i] = map.gaussian(i, 0).mean; });
   }
@@ -47,12 +49,12 @@ class CellCoverage {
   }
 
   bool coversItsData(std::size_t cell, int s) const {
-    std::vector<Ellipsoid95> ellipsoids;
+    std::vector<Ellipsoid95<D>> ellipsoids;
     const IndexRange clusters = map_.gaussiansOf(cell, s), data = dataUnder(cell, s);
     for (std::size_t i = clusters.first; i < clusters.last; ++i) ellipsoids.emplace_back(map_.gaussian(i, s));
     return std::all_of(data_.begin() + static_cast<std::ptrdiff_t>(data.first),
-                       data_.begin() + static_cast<std::ptrdiff_t>(data.last), [&](const Vector<3>& mean) {
-                         return std::any_of(ellipsoids.begin(), ellipsoids.end(), [&](const Ellipsoid95& ellipsoid) {
+                       data_.begin() + static_cast<std::ptrdiff_t>(data.last), [&](const Vector<D>& mean) {
+                         return std::any_of(ellipsoids.begin(), ellipsoids.end(), [&](const Ellipsoid95<D>& ellipsoid) {
                            return ellipsoid.distance(mean) <= max_error_;
                          });
                        });
@@ -67,21 +69,21 @@ class CellCoverage {
     sampling.seed = options_.seed;
     sampling.threads = options_.threads;
     sampling.bounds = SampleBounds::Cell;  // compress() deletes the finer cells, so their boxes will be gone
-    const MapSamples<3> samples = sampleMap<3>(map_, s, sampling);
+    const MapSamples<D> samples = sampleMap<D>(map_, s, sampling);
     std::vector<std::size_t> cell_of(map_.gaussianCount(s));
     for (std::size_t cell = 0; cell < good.size(); ++cell) {
       const IndexRange clusters = map_.gaussiansOf(cell, s);
       std::fill(cell_of.begin() + static_cast<std::ptrdiff_t>(clusters.first),
                 cell_of.begin() + static_cast<std::ptrdiff_t>(clusters.last), cell);
     }
-    std::vector<Vector<3>> asked;
+    std::vector<Vector<D>> asked;
     std::vector<std::uint32_t> gaussian;
     for (std::size_t i = 0; i < samples.points.size(); ++i) {
       if (!good[cell_of[samples.gaussian[i]]]) continue;
       asked.push_back(samples.points[i]);
       gaussian.push_back(samples.gaussian[i]);
     }
-    const std::vector<double> distances = nearestDistances(asked, data_, options_.threads);
+    const std::vector<double> distances = nearestDistances(inSpace(asked), inSpace(data_), options_.threads);
     std::vector<std::size_t> placed(cell_of.size(), 0), near(cell_of.size(), 0);
     for (std::size_t i = 0; i < distances.size(); ++i) {
       ++placed[gaussian[i]];
@@ -91,13 +93,14 @@ class CellCoverage {
       if (100 * near[i] < 95 * placed[i] || placed[i] == 0) good[cell_of[i]] = false;
   }
 
-  const GaussianMap<3>& map_;
+  const GaussianMap<D>& map_;
   const double max_error_;
   const CompressOptions options_;
-  std::vector<Vector<3>> data_;  // [m], map frame
+  std::vector<Vector<D>> data_;  // [m], map frame
 };
 
-void check(const GaussianMap<3>& map, double max_error, const CompressOptions& options) {
+template <int D>
+void check(const GaussianMap<D>& map, double max_error, const CompressOptions& options) {
   require(std::isfinite(max_error) && max_error > 0.0, "max_error", max_error, "must be a positive number of metres");
   require(options.samples >= 1, "samples", static_cast<double>(options.samples), "must be at least 1");
   if (map.isCompressed())
@@ -108,10 +111,11 @@ void check(const GaussianMap<3>& map, double max_error, const CompressOptions& o
 
 }  // namespace
 
-GaussianMap<3> compress(GaussianMap<3> map, double max_error, const CompressOptions& options) {
+template <int D>
+GaussianMap<D> compress(GaussianMap<D> map, double max_error, const CompressOptions& options) {
   check(map, max_error, options);
   if (map.empty() || map.scales() == 1) return map;
-  const CellCoverage coverage(map, max_error, options);
+  const CellCoverage<D> coverage(map, max_error, options);
   std::vector<std::vector<char>> keep(static_cast<std::size_t>(map.scales()));
   keep.back().assign(map.cellCount(map.scales() - 1), true);
   bool thinner = false;
@@ -127,7 +131,10 @@ GaussianMap<3> compress(GaussianMap<3> map, double max_error, const CompressOpti
       thinner |= static_cast<bool>(good[cell]);
     }
   }
-  return thinner ? keepCells<3>(map, keep) : map;
+  return thinner ? keepCells<D>(map, keep) : map;
 }
+
+template GaussianMap<2> compress<2>(GaussianMap<2>, double, const CompressOptions&);
+template GaussianMap<3> compress<3>(GaussianMap<3>, double, const CompressOptions&);
 
 }  // namespace gaussmap

@@ -5,19 +5,20 @@
 
 namespace gaussmap::detail {
 
-/// The solid ellipsoid around the mean of a Gaussian that holds 95 % of its mass.
+/// The solid ellipsoid (D = 2: ellipse) around the mean of a Gaussian that holds 95 % of its mass.
+template <int D>
 class Ellipsoid95 {
  public:
   /// Throws std::domain_error if the covariance is not finite.
-  explicit Ellipsoid95(const Gaussian<3>& gaussian);
+  explicit Ellipsoid95(const Gaussian<D>& gaussian);
 
   /// Returns the distance from a point to the nearest point of the ellipsoid [m]; 0 inside.
-  double distance(const Vector<3>& point) const;
+  double distance(const Vector<D>& point) const;
 
  private:
-  Vector<3> centre_;
-  Matrix<3> axes_;       // unit vectors, in the columns
-  Vector<3> half_axes_;  // [m]
+  Vector<D> centre_;
+  Matrix<D> axes_;       // unit vectors, in the columns
+  Vector<D> half_axes_;  // [m]
 };
 
 }  // namespace gaussmap::detail

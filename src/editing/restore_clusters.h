@@ -11,8 +11,9 @@
 namespace gaussmap::detail {
 
 /// A map after deleted clusters were restored.
+template <int D>
 struct RestoredMap {
-  GaussianMap<3> map;
+  GaussianMap<D> map;
   std::size_t clusters = 0;  ///< number of restored clusters of the finest scale
   std::int64_t points = 0;   ///< number of points of these clusters
 };
@@ -24,7 +25,8 @@ struct RestoredMap {
 ///
 /// Throws std::invalid_argument if the map has no moments. Also throws it if a cluster has no moments, is from a map of
 /// another resolution, or could give a cell more points than CellMoments::kMaxPoints.
-GAUSSMAP_API RestoredMap restoreClusters(const GaussianMap<3>& map, const std::vector<RemovedCluster<3>>& removed,
-                                         const std::function<bool(const Vector<3>&)>& isInside, int threads = 0);
+template <int D>
+GAUSSMAP_API RestoredMap<D> restoreClusters(const GaussianMap<D>& map, const std::vector<RemovedCluster<D>>& removed,
+                                            const std::function<bool(const Vector<D>&)>& isInside, int threads = 0);
 
 }  // namespace gaussmap::detail

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/check.h"
+#include "core/in_space.h"
 #include "core/quantile.h"
 #include "gaussmap/map/sampling.h"
 #include "map/occupied_areas.h"
@@ -50,33 +51,35 @@ GaussianMap<D> simplifyByCount(GaussianMap<D> map, const Budget& budget, const S
 }
 
 /// Returns the error of a scale: 95 % of its samples are at most this far from the nearest point of `data` [m].
-double errorOf(const GaussianMap<3>& map, int s, const std::vector<Vector<3>>& data, const ErrorSampling& sampling,
+template <int D>
+double errorOf(const GaussianMap<D>& map, int s, const std::vector<Vector<3>>& data, const ErrorSampling& sampling,
                int threads) {
   const SampleOptions options{sampling.samples, 1, SampleShare::Volume, sampling.seed, threads};
-  std::vector<double> distances = nearestDistances(sampleMap<3>(map, s, options).points, data, threads);
+  std::vector<double> distances = nearestDistances(inSpace(sampleMap<D>(map, s, options).points), data, threads);
   return percentile(distances, 95);
 }
 
-RefineResult<3> simplifyToError(GaussianMap<3> map, const MaxError& budget, const SimplifyOptions& options) {
+template <int D>
+RefineResult<D> simplifyToError(GaussianMap<D> map, const MaxError& budget, const SimplifyOptions& options) {
   if (map.empty()) return {std::move(map), {}, {}};
   const ErrorSampling& sampling = budget.sampling;
   const SampleOptions data_options{sampling.data, 1, SampleShare::Mass, sampling.seed, options.threads};
-  const std::vector<Vector<3>> data = sampleLeaves<3>(map, data_options).points;
-  RefineResult<3> result{std::move(map), {}, {}};
+  const std::vector<Vector<3>> data = inSpace(sampleLeaves<D>(map, data_options).points);
+  RefineResult<D> result{std::move(map), {}, {}};
   for (int s = 0; s < result.map.scales(); ++s) {
-    const GaussianMap<3>& before = result.map;
+    const GaussianMap<D>& before = result.map;
     if (before.gaussianCount(s) == before.cellCount(s)) continue;  // nothing to merge
-    const auto error = [&](const GaussianMap<3>& trial) { return errorOf(trial, s, data, sampling, options.threads); };
+    const auto error = [&](const GaussianMap<D>& trial) { return errorOf(trial, s, data, sampling, options.threads); };
     const double least = error(before);
     if (least > budget.metres) {
       result.not_reached.push_back({s, least});
       continue;
     }
     std::size_t low = before.cellCount(s) - 1, high = before.gaussianCount(s);  // too few Gaussians, and enough
-    GaussianMap<3> best = before;
+    GaussianMap<D> best = before;
     while (high - low > 1 + high / 200) {  // to half a percent
       const std::size_t middle = low + (high - low) / 2;
-      GaussianMap<3> trial = simplifyByCount<3>(before, MaxGaussians{{{s, middle}}}, options);
+      GaussianMap<D> trial = simplifyByCount<D>(before, MaxGaussians{{{s, middle}}}, options);
       const bool is_good = error(trial) <= budget.metres;
       if (is_good) best = std::move(trial);
       (is_good ? high : low) = middle;
@@ -86,16 +89,17 @@ RefineResult<3> simplifyToError(GaussianMap<3> map, const MaxError& budget, cons
   return result;
 }
 
-RefineResult<3> simplifyToBytes(GaussianMap<3> map, const MaxBytes& budget, const SimplifyOptions& options) {
-  RefineResult<3> whole{std::move(map), {}, {}};
-  if (budget.size_of(whole) <= budget.bytes) return whole;
+template <int D>
+RefineResult<D> simplifyToBytes(GaussianMap<D> map, const MaxBytes& budget, const SimplifyOptions& options) {
+  RefineResult<D> whole{std::move(map), {}, {}};
+  if (sizeOf(budget, whole) <= budget.bytes) return whole;
   double most = 1.0;
   for (int s = 0; s < whole.map.scales(); ++s)
     most = std::max(most, double(whole.map.gaussianCount(s)) / std::max(1.0, double(whole.map.cellCount(s))));
-  RefineResult<3> best;
+  RefineResult<D> best;
   largestMultiple(most, budget.bytes, [&](double multiple) {
-    RefineResult<3> trial{simplifyByCount<3>(whole.map, PerCell{multiple}, options), {}, {}};
-    const std::uintmax_t bytes = budget.size_of(trial);
+    RefineResult<D> trial{simplifyByCount<D>(whole.map, PerCell{multiple}, options), {}, {}};
+    const std::uintmax_t bytes = sizeOf(budget, trial);
     if (multiple == 1.0) requireRoom(budget.bytes, bytes);
     if (bytes <= budget.bytes) best = std::move(trial);
     return bytes;
@@ -107,16 +111,12 @@ RefineResult<3> simplifyToBytes(GaussianMap<3> map, const MaxBytes& budget, cons
 
 template <int D>
 RefineResult<D> simplify(GaussianMap<D> map, const Budget& budget, const SimplifyOptions& options) {
-  checkBudget(budget, 0, map.scales());
+  checkBudget(budget, 0, map.scales(), D);
   if (options.threads < 0)
     throw std::invalid_argument("threads = " + std::to_string(options.threads) +
                                 ": must be at least 1 (0 = all cores)");
-  if constexpr (D == 3) {
-    if (const auto* bytes = std::get_if<MaxBytes>(&budget)) return simplifyToBytes(std::move(map), *bytes, options);
-    if (const auto* error = std::get_if<MaxError>(&budget)) return simplifyToError(std::move(map), *error, options);
-  } else {
-    refuseMeasuredBudget(budget);
-  }
+  if (const auto* bytes = std::get_if<MaxBytes>(&budget)) return simplifyToBytes(std::move(map), *bytes, options);
+  if (const auto* error = std::get_if<MaxError>(&budget)) return simplifyToError(std::move(map), *error, options);
   return {simplifyByCount(std::move(map), budget, options), {}, {}};
 }
 

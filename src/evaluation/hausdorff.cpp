@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "core/in_space.h"
 #include "core/parallel.h"
 #include "core/quantile.h"
 #include "gaussmap/map/queries.h"
@@ -49,22 +50,26 @@ void checkSet(const std::vector<Vector<3>>& points, const char* name) {
 
 }  // namespace
 
-HausdorffResult hausdorff(const std::vector<Vector<3>>& a, const std::vector<Vector<3>>& b, int threads,
+template <int D>
+HausdorffResult hausdorff(const std::vector<Vector<D>>& a, const std::vector<Vector<D>>& b, int threads,
                           PointDistances* distances) {
-  checkSet(a, "a");
-  checkSet(b, "b");
-  const PointTreePair trees(a, b, threads);
+  const std::vector<Vector<3>>&subject = inSpace(a), &reference = inSpace(b);
+  checkSet(subject, "a");
+  checkSet(reference, "b");
+  const PointTreePair trees(subject, reference, threads);
   std::vector<double> forward = nearestDistances(trees.a(), trees.b(), threads);
   std::vector<double> backward = nearestDistances(trees.b(), trees.a(), threads);
   const HausdorffResult result = summariseBoth(forward, backward, threads);
-  if (distances != nullptr) *distances = {a, std::move(forward), std::move(backward)};
+  if (distances != nullptr) *distances = {subject, std::move(forward), std::move(backward)};
   return result;
 }
 
-HausdorffMaxima hausdorffMaxima(const std::vector<Vector<3>>& a, const std::vector<Vector<3>>& b, int threads) {
-  checkSet(a, "a");
-  checkSet(b, "b");
-  const PointTreePair trees(a, b, threads);
+template <int D>
+HausdorffMaxima hausdorffMaxima(const std::vector<Vector<D>>& a, const std::vector<Vector<D>>& b, int threads) {
+  const std::vector<Vector<3>>&from = inSpace(a), &to = inSpace(b);
+  checkSet(from, "a");
+  checkSet(to, "b");
+  const PointTreePair trees(from, to, threads);
   return {largestNearestDistance(trees.a(), trees.b(), threads), largestNearestDistance(trees.b(), trees.a(), threads)};
 }
 
@@ -84,7 +89,9 @@ struct Reference::Parts {
   bool is_map = false;
 };
 
-Reference::Reference(std::vector<Vector<3>> points) : parts_(std::make_shared<const Parts>(std::move(points))) {}
+template <int D>
+Reference::Reference(std::vector<Vector<D>> points)
+    : parts_(std::make_shared<const Parts>(inSpace(std::move(points)))) {}
 
 Reference::Reference(const TriangleMesh& mesh, std::size_t samples, std::uint64_t seed) {
   if (samples == 0) throw std::invalid_argument("a mesh as reference needs at least one sample");
@@ -93,11 +100,12 @@ Reference::Reference(const TriangleMesh& mesh, std::size_t samples, std::uint64_
   parts_ = parts;
 }
 
-Reference::Reference(const MapSamples<3>& samples) {
+template <int D>
+Reference::Reference(const MapSamples<D>& samples) {
   if (samples.points.empty()) throw std::invalid_argument("no samples of the map to compare with");
-  const auto parts = std::make_shared<Parts>(samples.points);
+  const auto parts = std::make_shared<Parts>(inSpace(samples.points));
   parts->is_map = true;
-  std::vector<Vector<3>> near = samples.within(2.0);
+  std::vector<Vector<3>> near = inSpace(samples.within(2.0));
   if (!near.empty()) parts->near = std::make_unique<const Parts>(std::move(near));
   parts_ = parts;
 }
@@ -106,8 +114,9 @@ const std::vector<Vector<3>>& Reference::points() const {
   return parts_->points;
 }
 
-HausdorffResult Reference::compare(const std::vector<Vector<3>>& subject, int threads,
-                                   PointDistances* distances) const {
+template <int D>
+HausdorffResult Reference::compare(const std::vector<Vector<D>>& points, int threads, PointDistances* distances) const {
+  const std::vector<Vector<3>>& subject = inSpace(points);
   checkSet(subject, "subject");
   const PointTree tree(subject);
   std::vector<double> forward = parts_->forward(subject, tree, threads);
@@ -117,7 +126,8 @@ HausdorffResult Reference::compare(const std::vector<Vector<3>>& subject, int th
   return result;
 }
 
-MapHausdorff Reference::compareSamples(const MapSamples<3>& samples, int threads, PointDistances* distances) const {
+template <int D>
+MapHausdorff Reference::compareSamples(const MapSamples<D>& samples, int threads, PointDistances* distances) const {
   if (samples.points.empty())
     throw std::invalid_argument("no samples: no Gaussian of the scale has probability mass within its bounds");
 
@@ -127,7 +137,7 @@ MapHausdorff Reference::compareSamples(const MapSamples<3>& samples, int threads
   PointDistances all;
   result.all = compare(samples.points, threads, &all);
 
-  const std::vector<Vector<3>> near = samples.within(2.0);
+  const std::vector<Vector<3>> near = inSpace(samples.within(2.0));
   if (!near.empty() && parts_->is_map && parts_->near) {
     const PointTree tree(near);
     result.within_two_sigma = summariseBoth(parts_->near->forward(near, tree, threads),
@@ -143,23 +153,43 @@ MapHausdorff Reference::compareSamples(const MapSamples<3>& samples, int threads
   return result;
 }
 
-MapHausdorff Reference::compare(const GaussianMap<3>& map, int scale, const SampleOptions& options,
+template <int D>
+MapHausdorff Reference::compare(const GaussianMap<D>& map, int scale, const SampleOptions& options,
                                 PointDistances* distances) const {
   MapHausdorff result = compareSamples(sampleMap(map, scale, options), options.threads, distances);
   result.gaussians = map.gaussianCount(scale);
   return result;
 }
 
-MapHausdorff Reference::compareLeaves(const GaussianMap<3>& map, const SampleOptions& options,
+template <int D>
+MapHausdorff Reference::compareLeaves(const GaussianMap<D>& map, const SampleOptions& options,
                                       PointDistances* distances) const {
   MapHausdorff result = compareSamples(sampleLeaves(map, options), options.threads, distances);
-  result.gaussians = leaves<3>(map).size();
+  result.gaussians = leaves<D>(map).size();
   return result;
 }
 
-MapHausdorff evaluateMap(const GaussianMap<3>& map, int scale, const std::vector<Vector<3>>& reference,
+template <int D>
+MapHausdorff evaluateMap(const GaussianMap<D>& map, int scale, const std::vector<Vector<D>>& reference,
                          const SampleOptions& options) {
   return Reference(reference).compare(map, scale, options);
 }
+
+#define GAUSSMAP_INSTANTIATE(D)                                                                                       \
+  template HausdorffResult hausdorff<D>(const std::vector<Vector<(D)>>&, const std::vector<Vector<(D)>>&, int,        \
+                                        PointDistances*);                                                             \
+  template HausdorffMaxima hausdorffMaxima<D>(const std::vector<Vector<(D)>>&, const std::vector<Vector<(D)>>&, int); \
+  template Reference::Reference(std::vector<Vector<(D)>>);                                                            \
+  template Reference::Reference(const MapSamples<D>&);                                                                \
+  template HausdorffResult Reference::compare<D>(const std::vector<Vector<(D)>>&, int, PointDistances*) const;        \
+  template MapHausdorff Reference::compare<D>(const GaussianMap<D>&, int, const SampleOptions&, PointDistances*)      \
+      const;                                                                                                          \
+  template MapHausdorff Reference::compareLeaves<D>(const GaussianMap<D>&, const SampleOptions&, PointDistances*)     \
+      const;                                                                                                          \
+  template MapHausdorff evaluateMap<D>(const GaussianMap<D>&, int, const std::vector<Vector<(D)>>&,                   \
+                                       const SampleOptions&);
+GAUSSMAP_INSTANTIATE(2)
+GAUSSMAP_INSTANTIATE(3)
+#undef GAUSSMAP_INSTANTIATE
 
 }  // namespace gaussmap

@@ -32,16 +32,28 @@ void forBlocks(const ScanReader& reader, int threads, const Body& body) {
   });
 }
 
-/// The moments and counts of one thread.
-struct Partial {
-  MomentGrid<3> moments;
-  PointCounts counts;
-};
-using Partials = tbb::enumerable_thread_specific<Partial>;
+/// Returns the accepted points of a block in D dimensions, map frame.
+const PointBlock<3>& pointsOf(const PointBlock<3>& block, PointBlock<3>&) {
+  return block;
+}
+const PointBlock<2>& pointsOf(const PointBlock<3>& block, PointBlock<2>& planar) {
+  planar.size = block.size;
+  for (int axis = 0; axis < 2; ++axis) std::copy_n(block.coordinate[axis], block.size, planar.coordinate[axis]);
+  return planar;
+}
+
+/// The moments and counts of each thread.
+template <int D>
+using Partials = tbb::enumerable_thread_specific<AccumulatedScans<D>>;
+
+template <int D>
+Partials<D> emptyPartials(double resolution) {
+  return Partials<D>([resolution] { return AccumulatedScans<D>{MomentGrid<D>(resolution), {}}; });
+}
 
 /// Adds the points of all scans to `partials`. After every block, the thread calls full(partial) with its own partial.
-template <typename Full>
-void accumulate(const Scans& scans, const AccumulateOptions& options, Partials& partials, const Full& full,
+template <int D, typename Full>
+void accumulate(const Scans& scans, const AccumulateOptions& options, Partials<D>& partials, const Full& full,
                 const ReportProgress& progress) {
   const PointLimits limits = limitsOf(options);
   checkLimits(limits);
@@ -51,12 +63,13 @@ void accumulate(const Scans& scans, const AccumulateOptions& options, Partials& 
     const ScanInfo scan = scans.info(index);
     const std::unique_ptr<ScanReader> reader = scans.open(index);
     forBlocks(*reader, options.threads, [&](std::size_t first) {
-      Partial& partial = partials.local();
+      AccumulatedScans<D>& partial = partials.local();
       PointBlock<3> block;
+      PointBlock<D> flat;
       reader->read(first, block);
       partial.counts += acceptPoints(scan.pose, scans.frame(), limits, block);
       try {
-        if (partial.moments.add(block) != block.size)
+        if (partial.moments.add(pointsOf(block, flat)) != block.size)
           throw std::out_of_range("a point is not finite in the map frame; check the units and the pose");
       } catch (const std::out_of_range& error) {
         throw std::out_of_range(scan.name + ": " + error.what());
@@ -75,12 +88,14 @@ void accumulate(const Scans& scans, const AccumulateOptions& options, Partials& 
 
 }  // namespace
 
-AccumulatedScans accumulateScans(const Scans& scans, const AccumulateOptions& options, const ReportProgress& progress) {
-  Partials partials([&] { return Partial{MomentGrid<3>(options.resolution), {}}; });
-  accumulate(
-      scans, options, partials, [](const Partial&) {}, progress);
-  AccumulatedScans all{MomentGrid<3>(options.resolution), {}};
-  for (Partial& partial : partials) {
+template <int D>
+AccumulatedScans<D> accumulateScans(const Scans& scans, const AccumulateOptions& options,
+                                    const ReportProgress& progress) {
+  Partials<D> partials = emptyPartials<D>(options.resolution);
+  accumulate<D>(
+      scans, options, partials, [](const AccumulatedScans<D>&) {}, progress);
+  AccumulatedScans<D> all{MomentGrid<D>(options.resolution), {}};
+  for (AccumulatedScans<D>& partial : partials) {
     all.counts += partial.counts;
     if (partial.moments.size() > all.moments.size()) std::swap(partial.moments, all.moments);
     all.moments.merge(partial.moments, options.threads);
@@ -88,36 +103,37 @@ AccumulatedScans accumulateScans(const Scans& scans, const AccumulateOptions& op
   return all;
 }
 
+template <int D>
 PointCounts accumulateScansInParts(const Scans& scans, const AccumulateOptions& options, std::size_t max_bytes,
-                                   const std::function<void(const MomentGrid<3>&)>& take,
-                                   const ReportProgress& progress) {
-  Partials partials([&] { return Partial{MomentGrid<3>(options.resolution), {}}; });
+                                   const typename AccumulatedScans<D>::TakePart& take, const ReportProgress& progress) {
+  Partials<D> partials = emptyPartials<D>(options.resolution);
   const auto threads = static_cast<std::size_t>(threadCount(options.threads));
   std::mutex mutex;
-  const auto hand_over = [&](Partial& partial) {
+  const auto hand_over = [&](AccumulatedScans<D>& partial) {
     if (partial.moments.empty()) return;
     const std::lock_guard lock(mutex);
     take(partial.moments);
-    partial.moments = MomentGrid<3>(options.resolution);
+    partial.moments = MomentGrid<D>(options.resolution);
   };
-  accumulate(
+  accumulate<D>(
       scans, options, partials,
-      [&](Partial& partial) {
+      [&](AccumulatedScans<D>& partial) {
         if (partial.moments.memoryBytes() > max_bytes / threads) hand_over(partial);
       },
       progress);
   PointCounts counts;
-  for (Partial& partial : partials) {
+  for (AccumulatedScans<D>& partial : partials) {
     counts += partial.counts;
     hand_over(partial);
   }
   return counts;
 }
 
-std::vector<Vector<3>> readPoints(const Scans& scans, const AccumulateOptions& options) {
+template <int D>
+std::vector<Vector<D>> readPoints(const Scans& scans, const AccumulateOptions& options) {
   const PointLimits limits = limitsOf(options);
   checkLimits(limits);
-  std::vector<Vector<3>> points;
+  std::vector<Vector<D>> points;
   for (std::size_t index = 0; index < scans.size(); ++index) {
     const ScanInfo scan = scans.info(index);
     const std::unique_ptr<ScanReader> reader = scans.open(index);
@@ -125,12 +141,23 @@ std::vector<Vector<3>> readPoints(const Scans& scans, const AccumulateOptions& o
       PointBlock<3> block;
       reader->read(first, block);
       acceptPoints(scan.pose, scans.frame(), limits, block);
-      for (std::size_t i = 0; i < block.size; ++i)
-        points.emplace_back(block.coordinate[0][i], block.coordinate[1][i], block.coordinate[2][i]);
+      for (std::size_t i = 0; i < block.size; ++i) {
+        points.emplace_back();
+        for (int axis = 0; axis < D; ++axis) points.back()(axis) = block.coordinate[axis][i];
+      }
     });
     reader->requireWhole();
   }
   return points;
 }
+
+#define GAUSSMAP_INSTANTIATE(D)                                                                                   \
+  template AccumulatedScans<D> accumulateScans<D>(const Scans&, const AccumulateOptions&, const ReportProgress&); \
+  template PointCounts accumulateScansInParts<D>(const Scans&, const AccumulateOptions&, std::size_t,             \
+                                                 const AccumulatedScans<D>::TakePart&, const ReportProgress&);    \
+  template std::vector<Vector<(D)>> readPoints<D>(const Scans&, const AccumulateOptions&);
+GAUSSMAP_INSTANTIATE(2)
+GAUSSMAP_INSTANTIATE(3)
+#undef GAUSSMAP_INSTANTIATE
 
 }  // namespace gaussmap

@@ -21,7 +21,7 @@ void requireOption(bool good, const std::string& name, Value value, const std::s
 
 /// Checks a budget of any kind.
 struct BudgetCheck {
-  int first_scale, scales;
+  int first_scale, scales, dimensions;
 
   void operator()(const PerCell& budget) const {
     requireOption(std::isfinite(budget.gaussians) && budget.gaussians >= 1.0, "budget", budget.gaussians,
@@ -33,7 +33,9 @@ struct BudgetCheck {
                     "one of the scales " + std::to_string(first_scale) + " to " + std::to_string(scales - 1));
   }
   void operator()(const MaxBytes& budget) const {
-    if (!budget.size_of) throw std::invalid_argument("max_bytes: size_of is missing; use for example maxFileBytes()");
+    if (dimensions == 2 ? !budget.planar_size_of : !budget.size_of)
+      throw std::invalid_argument(std::string("max_bytes: ") + (dimensions == 2 ? "planar_size_of" : "size_of") +
+                                  " is missing; use for example maxFileBytes()");
   }
   void operator()(const MaxError& budget) const {
     requireOption(std::isfinite(budget.metres) && budget.metres > 0.0, "max_error", budget.metres,
@@ -55,8 +57,8 @@ bool isMeasured(const Budget& budget) {
 
 }  // namespace
 
-void checkBudget(const Budget& budget, int first_scale, int scales) {
-  std::visit(BudgetCheck{first_scale, scales}, budget);
+void checkBudget(const Budget& budget, int first_scale, int scales, int dimensions) {
+  std::visit(BudgetCheck{first_scale, scales, dimensions}, budget);
 }
 
 void checkSampling(const ErrorSampling& sampling) {
@@ -64,20 +66,14 @@ void checkSampling(const ErrorSampling& sampling) {
     throw std::invalid_argument("sampling: samples and data must be at least 1");
 }
 
-void checkRefinement(const Budget& budget, const RefineOptions& options, int scales) {
-  checkBudget(budget, 1, scales);
+void checkRefinement(const Budget& budget, const RefineOptions& options, int scales, int dimensions) {
+  checkBudget(budget, 1, scales, dimensions);
   requireOption(options.queue >= 0, "queue", options.queue, "at least 1 (0 = automatic)");
   requireOption(options.max_swaps >= 0, "max_swaps", options.max_swaps, "at least 0");
   requireOption(options.threads >= 0, "threads", options.threads, "at least 1 (0 = all cores)");
   if (options.curves) checkCurves(*options.curves);
   if (options.method != RefineMethod::Agglomerate && (options.curves || isMeasured(budget)))
     throw std::invalid_argument("method: error curves, MaxBytes and MaxError need RefineMethod::Agglomerate");
-}
-
-void refuseMeasuredBudget(const Budget& budget) {
-  if (isMeasured(budget))
-    throw std::invalid_argument(
-        "budget: MaxBytes and MaxError are for maps of 3 dimensions; use PerCell or MaxGaussians");
 }
 
 std::size_t extraGaussians(const Budget& budget, int scale, std::size_t cells, std::size_t available,

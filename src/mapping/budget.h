@@ -11,14 +11,19 @@
 namespace gaussmap::detail {
 
 /// Throws std::invalid_argument if a value of the budget is out of range; the message names the value. MaxGaussians may
-/// list the scales from `first_scale` to `scales` - 1.
-void checkBudget(const Budget& budget, int first_scale, int scales);
+/// list the scales from `first_scale` to `scales` - 1. MaxBytes must have the function for maps of these dimensions.
+void checkBudget(const Budget& budget, int first_scale, int scales, int dimensions);
 /// Throws std::invalid_argument if a number of samples is 0.
 void checkSampling(const ErrorSampling& sampling);
 /// Checks the budget and the options of refine() in the same way.
-GAUSSMAP_API void checkRefinement(const Budget& budget, const RefineOptions& options, int scales);
-/// Throws std::invalid_argument for the budgets that exist for D = 3 only: MaxBytes and MaxError.
-void refuseMeasuredBudget(const Budget& budget);
+GAUSSMAP_API void checkRefinement(const Budget& budget, const RefineOptions& options, int scales, int dimensions);
+/// Returns the size of a result [bytes], from the function of the budget for its dimension.
+inline std::uintmax_t sizeOf(const MaxBytes& budget, const RefineResult<3>& result) {
+  return budget.size_of(result);
+}
+inline std::uintmax_t sizeOf(const MaxBytes& budget, const RefineResult<2>& result) {
+  return budget.planar_size_of(result);
+}
 
 /// Returns the number of Gaussians beyond one per cell that PerCell or MaxGaussians allows at a scale. If the limit is
 /// a multiple of the cells, the scale gets at most `available` Gaussians. `otherwise` = the multiple at scales that

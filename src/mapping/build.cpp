@@ -58,17 +58,19 @@ GaussianMap<D> build(const MapScale<D>& cells, const MapOptions& options) {
   return withCoarserScales<D>(std::move(finest), Grid<D>(options));
 }
 
-GaussianMap<3> build(const Scans& scans, const MapOptions& options, AccumulateOptions reading, PointCounts* counts) {
-  reading.resolution = Grid<3>(options).options().resolution;
-  const AccumulatedScans accumulated = accumulateScans(scans, reading);
+template <int D>
+GaussianMap<D> build(const Scans& scans, const MapOptions& options, AccumulateOptions reading, PointCounts* counts) {
+  reading.resolution = Grid<D>(options).options().resolution;
+  const AccumulatedScans<D> accumulated = accumulateScans<D>(scans, reading);
   if (counts != nullptr) *counts = accumulated.counts;
-  return build<3>(accumulated.moments, options);
+  return build<D>(accumulated.moments, options);
 }
 
 #define GAUSSMAP_INSTANTIATE(D)                                                         \
   template GaussianMap<D> build<D>(const MomentGrid<D>&, const MapOptions&);            \
   template GaussianMap<D> build<D>(const std::vector<Vector<(D)>>&, const MapOptions&); \
-  template GaussianMap<D> build<D>(const MapScale<D>&, const MapOptions&);
+  template GaussianMap<D> build<D>(const MapScale<D>&, const MapOptions&);              \
+  template GaussianMap<D> build<D>(const Scans&, const MapOptions&, AccumulateOptions, PointCounts*);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)
 #undef GAUSSMAP_INSTANTIATE

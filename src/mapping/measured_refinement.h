@@ -12,9 +12,11 @@ template <int D>
 GaussianMap<D> refineByCount(GaussianMap<D> map, const Budget& budget, const RefineOptions& options);
 
 /// The budgets PerCell and MaxGaussians with error curves, and MaxError.
-RefineResult<3> refineMeasured(GaussianMap<3> map, const Budget& budget, const RefineOptions& options);
+template <int D>
+RefineResult<D> refineMeasured(GaussianMap<D> map, const Budget& budget, const RefineOptions& options);
 
 /// The budget MaxBytes, with or without error curves.
-RefineResult<3> refineToBytes(GaussianMap<3> map, const MaxBytes& budget, const RefineOptions& options);
+template <int D>
+RefineResult<D> refineToBytes(GaussianMap<D> map, const MaxBytes& budget, const RefineOptions& options);
 
 }  // namespace gaussmap::detail

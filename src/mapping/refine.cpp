@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gaussmap/mapping/refine.h"
 
-#include <stdexcept>
 #include <utility>
 #include <variant>
 
@@ -36,15 +35,10 @@ GaussianMap<D> detail::refineByCount(GaussianMap<D> map, const Budget& budget, c
 
 template <int D>
 RefineResult<D> refine(GaussianMap<D> map, const Budget& budget, const RefineOptions& options) {
-  checkRefinement(budget, options, map.scales());
-  if constexpr (D == 3) {
-    if (const auto* bytes = std::get_if<MaxBytes>(&budget)) return refineToBytes(std::move(map), *bytes, options);
-    if (options.curves || std::holds_alternative<MaxError>(budget))
-      return refineMeasured(std::move(map), budget, options);
-  } else {
-    refuseMeasuredBudget(budget);
-    if (options.curves) throw std::invalid_argument("curves: errors are measured in maps of 3 dimensions only");
-  }
+  checkRefinement(budget, options, map.scales(), D);
+  if (const auto* bytes = std::get_if<MaxBytes>(&budget)) return refineToBytes(std::move(map), *bytes, options);
+  if (options.curves || std::holds_alternative<MaxError>(budget))
+    return refineMeasured(std::move(map), budget, options);
   return {refineByCount(std::move(map), budget, options), {}, {}};
 }
 

@@ -5,16 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <stdexcept>
-#include <string>
 
-#include "core/check.h"
 #include "gaussmap/mapping/build.h"
+#include "registration/check_options.h"
 #include "registration/descend.h"
 #include "registration/map_neighbours.h"
 #include "registration/normal_equations.h"
 #include "registration/scan_gaussians.h"
 #include "registration/scan_on_map.h"
+#include "registration/steps.h"
 
 namespace gaussmap {
 using namespace detail;
@@ -23,44 +22,6 @@ namespace {
 
 using Vector6 = NormalEquations::Vector6;
 using Matrix6 = NormalEquations::Matrix6;
-
-void check(const GaussianMap<3>& map, const Pose& guess, const RegistrationOptions& options) {
-  if (map.empty()) throw std::invalid_argument("the map is empty: there is nothing to register with");
-  if (const std::string fault = poseFault(guess); !fault.empty()) throw std::invalid_argument("guess: " + fault);
-  require(options.resolution >= 0.0 && std::isfinite(options.resolution), "resolution", options.resolution,
-          "must be positive and finite (0 = the finest cells)");
-  require(options.max_gaussians >= 1, "max_gaussians", double(options.max_gaussians), "must be at least 1");
-  require(options.max_iterations >= 1, "max_iterations", options.max_iterations, "must be at least 1");
-  require(options.kernel > 0.0, "kernel", options.kernel, "must be positive");
-  require(options.translation > 0.0, "translation", options.translation, "must be positive");
-  require(options.rotation > 0.0, "rotation", options.rotation, "must be positive");
-  require(options.degenerate >= 0.0, "degenerate", options.degenerate, "must not be negative");
-  require(options.threads >= 0, "threads", options.threads, "must be at least 1 (0 = all)");
-}
-
-constexpr int kCoarse = 4;  // factor by which the scan's cells are wider at the coarse scales of the map
-
-/// A step from coarse to fine.
-struct Step {
-  int scale;
-  double blur;  // [m]
-};
-
-std::vector<Step> stepsOf(const GaussianMap<3>& map) {
-  std::vector<Step> steps;
-  for (int scale = map.scales() - 1; scale >= 0; --scale) {
-    if (map.cellCount(scale) == 0) continue;  // possible in a compressed map
-    const double side = map.grid().side(scale);
-    for (const double part : {0.3, 0.1}) steps.push_back({scale, part * side});
-  }
-  return steps;
-}
-
-/// Returns the limits of a step. Before the last step, a hundredth of the blur is accurate enough.
-DescentLimits limitsOf(const Step& step, bool last, const RegistrationOptions& options) {
-  const double translation = std::max(options.translation, last ? 0.0 : 0.01 * step.blur);
-  return {options.max_iterations, translation, translation / options.translation * options.rotation};
-}
 
 /// Computes the covariance of the pose, and finds the direction with the least information. Multiplies rotations by the
 /// range, to make them comparable with metres.
@@ -84,8 +45,8 @@ RegistrationResult align(const GaussianMap<3>& source, const GaussianMap<3>& map
                          const RegistrationOptions& options) {
   RegistrationResult result;
   result.pose = normalised(guess);
-  const std::vector<Gaussian<3>> fine = gaussiansOf(source, side, options.max_gaussians),
-                                 coarse = gaussiansOf(source, kCoarse * side, options.max_gaussians);
+  const std::vector<Gaussian<3>> fine = gaussiansOf<3>(source, side, options.max_gaussians),
+                                 coarse = gaussiansOf<3>(source, kCoarse * side, options.max_gaussians);
   if (fine.empty()) return result;
   const Vector<3> origin = guess.translation;  // all sums are relative to it, to keep their precision far from zero
   Pose pose = result.pose;
@@ -125,14 +86,14 @@ double sideOf(const GaussianMap<3>& map, const RegistrationOptions& options) {
 
 RegistrationResult registerScan(const std::vector<Eigen::Vector3d>& points, const GaussianMap<3>& map,
                                 const Pose& guess, const RegistrationOptions& options) {
-  check(map, guess, options);
+  checkRegistration(map.empty(), guess, options);
   const double side = sideOf(map, options);
   return align(build<3>(points, {side, kCoarse, 2, 0.0}), map, side, guess, options);
 }
 
 RegistrationResult registerMap(const GaussianMap<3>& source, const GaussianMap<3>& map, const Pose& guess,
                                const RegistrationOptions& options) {
-  check(map, guess, options);
+  checkRegistration(map.empty(), guess, options);
   return align(source, map, sideOf(map, options), guess, options);
 }
 

@@ -11,6 +11,7 @@ namespace gaussmap::detail {
 
 /// Returns the Gaussians to register: those of the scale whose cells have the side nearest to `side` [m]. It chooses at
 /// most `most` of them evenly.
-std::vector<Gaussian<3>> gaussiansOf(const GaussianMap<3>& source, double side, std::size_t most);
+template <int D>
+std::vector<Gaussian<D>> gaussiansOf(const GaussianMap<D>& source, double side, std::size_t most);
 
 }  // namespace gaussmap::detail

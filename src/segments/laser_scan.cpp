@@ -12,6 +12,7 @@
 #include "core/quantile.h"
 #include "gaussmap/core/error.h"
 #include "gaussmap/sensor/projection.h"
+#include "segments/level_scan.h"
 
 namespace gaussmap {
 using namespace detail;
@@ -19,8 +20,7 @@ using namespace detail;
 namespace {
 
 constexpr double kNoReturn = std::numeric_limits<double>::quiet_NaN();
-constexpr double kMaxHeight = 0.5;  // of the points of a planar laser [m], because its poses may tilt a little
-constexpr double kGap = 1.5;        // a beam is missing if two beams are more than this many usual steps apart
+constexpr double kGap = 1.5;  // a beam is missing if two beams are more than this many usual steps apart
 
 struct Beam {
   double bearing;  // NaN: not known
@@ -160,6 +160,7 @@ LaserScan planarScan(const Scan& cloud, const PlanarScanOptions& options) {
   checkOptions(options);
   const Eigen::Matrix3d rotation = cloud.pose.rotation.toRotationMatrix();
   LaserScan scan;
+  scan.time = cloud.time;
   scan.max_range = std::numeric_limits<double>::infinity();  // farther points have no range already
   scan.pose.translation = cloud.pose.translation.head<2>();
   scan.pose.heading = std::atan2(rotation(1, 0), rotation(0, 0));
@@ -168,10 +169,8 @@ LaserScan planarScan(const Scan& cloud, const PlanarScanOptions& options) {
     addSlice(scan, view.beams, options.step);
     return scan;
   }
-  if (view.highest - view.lowest > kMaxHeight)
-    throw std::invalid_argument("not a scan of a planar laser: the heights of its points in the map are " +
-                                numberText(view.lowest) + " m to " + numberText(view.highest) +
-                                " m; use a slice of it");
+  if (view.highest - view.lowest > kMaxPlanarHeight)
+    throw std::invalid_argument(notPlanarText(view.lowest, view.highest));
   addSweep(scan, ordered(view.beams));
   return scan;
 }

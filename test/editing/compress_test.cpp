@@ -180,7 +180,7 @@ std::vector<bool> goodCells(const GaussianMapOctree& shown, const GaussianMapOct
     double nearest = std::numeric_limits<double>::infinity();
     const IndexRange range = shown.gaussiansOf(*cell, s);
     for (std::size_t g = range.first; g < range.last; ++g)
-      nearest = std::min(nearest, Ellipsoid95(shown.gaussian(g, s)).distance(datum));
+      nearest = std::min(nearest, Ellipsoid95<3>(shown.gaussian(g, s)).distance(datum));
     if (nearest > max_error) good[*cell] = false;
   }
   return good;

@@ -43,7 +43,7 @@ double distanceByTrying(const Vector<3>& point, const Gaussian<3>& gaussian, Ran
 }
 
 TEST(Ellipsoid95, OfASphereIsTheDistanceToItsCentreLessTheRadius) {
-  const Ellipsoid95 ball({{1.0, 2.0, 3.0}, 0.04 * Matrix<3>::Identity(), 7.0});
+  const Ellipsoid95<3> ball({{1.0, 2.0, 3.0}, 0.04 * Matrix<3>::Identity(), 7.0});
   EXPECT_NEAR(ball.distance({1.0, 2.0, 13.0}), 10.0 - 0.2 * kRadius, 1e-12);
   EXPECT_NEAR(ball.distance({1.0 - 3.0, 2.0 + 4.0, 3.0}), 5.0 - 0.2 * kRadius, 1e-12);
   EXPECT_EQ(ball.distance({1.0, 2.0, 3.0}), 0.0);
@@ -51,7 +51,7 @@ TEST(Ellipsoid95, OfASphereIsTheDistanceToItsCentreLessTheRadius) {
 }
 
 TEST(Ellipsoid95, AlongAnAxisIsTheDistanceToItsTip) {
-  const Ellipsoid95 plate(gaussianOf({0, 0, 0}, Matrix<3>::Identity(), {3.0, 2.0, 0.01}));
+  const Ellipsoid95<3> plate(gaussianOf({0, 0, 0}, Matrix<3>::Identity(), {3.0, 2.0, 0.01}));
   EXPECT_NEAR(plate.distance({20.0, 0.0, 0.0}), 20.0 - 3.0 * kRadius, 1e-12);
   EXPECT_NEAR(plate.distance({0.0, -20.0, 0.0}), 20.0 - 2.0 * kRadius, 1e-12);
   EXPECT_NEAR(plate.distance({0.0, 0.0, 5.0}), 5.0 - 0.01 * kRadius, 1e-12);
@@ -60,7 +60,7 @@ TEST(Ellipsoid95, AlongAnAxisIsTheDistanceToItsTip) {
 TEST(Ellipsoid95, HoldsNineteenOfTwentySamples) {
   Random random(3);
   const Gaussian<3> gaussian = gaussianOf({5, -5, 1}, randomRotation(random), {2.0, 0.5, 0.1});
-  const Ellipsoid95 ellipsoid(gaussian);
+  const Ellipsoid95<3> ellipsoid(gaussian);
   const GaussianSampler<3> sampler(gaussian);
   int inside = 0;
   for (int i = 0; i < 20000; ++i) inside += ellipsoid.distance(sampler(random)) == 0.0;
@@ -78,7 +78,7 @@ TEST(Ellipsoid95, AgreesWithTryingAllOverItsSurface) {
     }
     const Gaussian<3> gaussian = gaussianOf(offset, randomRotation(random), deviations);
     const Vector<3> point = offset + 2.0 * direction;
-    const Ellipsoid95 ellipsoid(gaussian);
+    const Ellipsoid95<3> ellipsoid(gaussian);
     const double distance = ellipsoid.distance(point);
     if (distance == 0.0)
       EXPECT_LE(mahalanobisSquared<3>(point, gaussian), kRadius * kRadius * (1.0 + 1e-12));
@@ -89,10 +89,10 @@ TEST(Ellipsoid95, AgreesWithTryingAllOverItsSurface) {
 
 TEST(Ellipsoid95, KnowsNeedlesAndSheetsOfAnyThickness) {
   for (const double thin : {1e-1, 1e-3, 1e-5, 1e-7}) {
-    const Ellipsoid95 needle(gaussianOf({0, 0, 0}, Matrix<3>::Identity(), {1.0, thin, thin}));
+    const Ellipsoid95<3> needle(gaussianOf({0, 0, 0}, Matrix<3>::Identity(), {1.0, thin, thin}));
     EXPECT_NEAR(needle.distance({0.0, 3.0, 4.0}), 5.0 - thin * kRadius, 1e-9);
     EXPECT_NEAR(needle.distance({kRadius + 1.0, 0.0, 0.0}), 1.0, 1e-9);
-    const Ellipsoid95 sheet(gaussianOf({0, 0, 0}, Matrix<3>::Identity(), {1.0, 1.0, thin}));
+    const Ellipsoid95<3> sheet(gaussianOf({0, 0, 0}, Matrix<3>::Identity(), {1.0, 1.0, thin}));
     EXPECT_NEAR(sheet.distance({0.0, 0.0, -2.0}), 2.0 - thin * kRadius, 1e-9);
     EXPECT_NEAR(sheet.distance({kRadius + 3.0, 0.0, 0.0}), 3.0, 1e-9);
     EXPECT_LT(sheet.distance({1.0, 1.0, 2.0 * kRadius * thin}), 2.0 * kRadius * thin);
@@ -105,7 +105,7 @@ TEST(Ellipsoid95, FarFromTheOriginIsTheSame) {
   const Gaussian<3> here = gaussianOf({0, 0, 0}, randomRotation(random), {1.0, 0.3, 0.02});
   Gaussian<3> there = here;
   there.mean = far;
-  EXPECT_NEAR(Ellipsoid95(there).distance(far + point), Ellipsoid95(here).distance(point), 1e-8);
+  EXPECT_NEAR(Ellipsoid95<3>(there).distance(far + point), Ellipsoid95<3>(here).distance(point), 1e-8);
 }
 
 }  // namespace

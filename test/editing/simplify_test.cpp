@@ -148,9 +148,6 @@ TEST(Simplify, RefusesLimitsThatMakeNoSense) {
   EXPECT_THROW(simplify<3>(map, MaxGaussians{{{3, 1000}}}), std::invalid_argument);
   EXPECT_THROW(simplify<3>(map, MaxError{}), std::invalid_argument);
   EXPECT_THROW(simplify<3>(map, MaxBytes{1000, {}}), std::invalid_argument);
-  const GaussianMap<2> plane = refinedMap<2>(randomCloud<2>(300, 2), smallGrid<2>());
-  EXPECT_THROW(simplify<2>(plane, MaxError{1.0, {}}), std::invalid_argument);
-  EXPECT_THROW(simplify<2>(plane, maxFileBytes(1000)), std::invalid_argument);
 }
 
 }  // namespace

@@ -225,15 +225,6 @@ TEST(MaxBytes, AreKeptWhereOnlyTheCurvesExceedThem) {
   }
 }
 
-TEST(Budget, OfMeasuredSizesAndErrorsIsForThreeDimensions) {
-  const GaussianMap<2> plane = build<2>(test::randomCloud<2>(300, 1), {0.1, 4, 3, 0.0});
-  EXPECT_GT(refine(plane, PerCell{2.0}).map.gaussianCount(1), plane.cellCount(1));
-  EXPECT_EQ(refine(plane, MaxGaussians{{{1, plane.cellCount(1)}}}).map.gaussianCount(1), plane.cellCount(1));
-  EXPECT_THROW(refine(plane, MaxError{1.0, {}}), std::invalid_argument);
-  EXPECT_THROW(refine(plane, maxFileBytes(100000)), std::invalid_argument);
-  EXPECT_THROW(refine(plane, PerCell{}, withCurves(quick())), std::invalid_argument);
-}
-
 TEST(SavedSize, IsTheSizeOfTheFile) {
   const test::TemporaryDirectory folder;
   const std::filesystem::path path = folder.path() / "map.gmap";

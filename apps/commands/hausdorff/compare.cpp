@@ -6,7 +6,6 @@
 #include "commands/recordings.h"
 #include "evaluation/error_cloud.h"
 #include "gaussmap/io/mesh/ply.h"
-#include "gaussmap/io/pcd/map_pcd.h"
 
 namespace gaussmap::app {
 using namespace detail;
@@ -65,19 +64,23 @@ Reference readMesh(const HausdorffCommand& command) {
 
 }  // namespace
 
+template <int D>
 void compareMap(const HausdorffCommand& command, ReferenceKind kind) {
+  if (D == 2 && kind == ReferenceKind::Mesh)
+    throw UsageError(command.onlyReference() + ": a planar map cannot be compared with a mesh, which has heights; " +
+                     "compare it with scans (3-D scans need --slice Z0 Z1)");
+  if (kind != ReferenceKind::Cloud && !command.slice.empty()) throw UsageError("--slice: only for scans");
   std::optional<Reference> reference;
-  std::optional<GaussianMap<3>> other;
+  std::optional<GaussianMap<D>> other;
   if (kind == ReferenceKind::Map)
-    other = loadAny(command.onlyReference());
+    other = loadMap<D>(command.onlyReference());
   else if (kind == ReferenceKind::Mesh)
     reference = readMesh(command);
-  const GaussianMap<3> map = loadAny(command.subject);
-  if (!other && !reference)
-    reference = Reference(readPoints(command.reference, command.samples.threads, map.grid().side(0)));
-  std::vector<const GaussianMap<3>*> maps = {&map};
+  const GaussianMap<D> map = loadMap<D>(command.subject);
+  if (!other && !reference) reference = Reference(readReference<D>(command, map.grid().side(0)));
+  std::vector<const GaussianMap<D>*> maps = {&map};
   if (other) maps.push_back(&*other);
-  const std::vector<Level> levels = chosenLevels(command, maps);
+  const std::vector<Level> levels = chosenLevels<D>(command, maps);
   if (!command.errors.path.empty() && levels.size() > 1)
     throw UsageError("--write-errors: writes one cloud; choose a --scale or --leaves");
 
@@ -85,7 +88,7 @@ void compareMap(const HausdorffCommand& command, ReferenceKind kind) {
   if (!command.json) printHead();
   for (const Level& level : levels) {
     const SampleOptions& samples = command.samples;
-    if (other) reference = Reference(level ? sampleMap(*other, *level, samples) : sampleLeaves(*other, samples));
+    if (other) reference = Reference(level ? sampleMap<D>(*other, *level, samples) : sampleLeaves<D>(*other, samples));
     PointDistances distances;
     const MapHausdorff result = level ? reference->compare(map, *level, samples, &distances)
                                       : reference->compareLeaves(map, samples, &distances);
@@ -106,6 +109,8 @@ void compareMap(const HausdorffCommand& command, ReferenceKind kind) {
   if (!written.is_null()) json["errors"] = written;
   printJson(json);
 }
+template void compareMap<2>(const HausdorffCommand&, ReferenceKind);
+template void compareMap<3>(const HausdorffCommand&, ReferenceKind);
 
 void compareCloud(const HausdorffCommand& command, ReferenceKind kind) {
   const int threads = command.samples.threads;

@@ -2,24 +2,24 @@
 #include <cstdio>
 
 #include "commands/hausdorff/hausdorff.h"
-#include "gaussmap/io/pcd/map_pcd.h"
 #include "gaussmap/map/queries.h"
 
 namespace gaussmap::app {
 
+template <int D>
 void scoreMap(const HausdorffCommand& command) {
-  const std::vector<Vector<3>> points = readPoints(command.reference, command.samples.threads);
-  const GaussianMap<3> map = loadAny(command.subject);
+  const std::vector<Vector<D>> points = readReference<D>(command, MapOptions().resolution);
+  const GaussianMap<D> map = loadMap<D>(command.subject);
   HeldOutOptions scoring = command.scoring;
   scoring.threads = command.samples.threads;
   Json all = Json::array();
   if (!command.json)
     std::printf("%-6s %10s %10s %10s %10s %10s %10s %10s\n", "scale", "gaussians", "mean", "median", "floor", "no cell",
                 "nowhere", "points");
-  for (const Level& level : chosenLevels(command, {&map})) {
+  for (const Level& level : chosenLevels<D>(command, {&map})) {
     const HeldOutResult result =
-        level ? heldOutLogLikelihood<3>(map, *level, points, scoring) : heldOutLogLikelihood<3>(map, points, scoring);
-    const std::size_t gaussians = level ? map.gaussianCount(*level) : leaves<3>(map).size();
+        level ? heldOutLogLikelihood<D>(map, *level, points, scoring) : heldOutLogLikelihood<D>(map, points, scoring);
+    const std::size_t gaussians = level ? map.gaussianCount(*level) : leaves<D>(map).size();
     const double share = 1.0 / static_cast<double>(result.count);
     const double in_no_cell = share * static_cast<double>(result.in_no_cell);
     const double nowhere = share * static_cast<double>(result.nowhere);
@@ -38,5 +38,7 @@ void scoreMap(const HausdorffCommand& command) {
   }
   if (command.json) printJson({{"map", command.subject}, {"background", scoring.background}, {"scales", all}});
 }
+template void scoreMap<2>(const HausdorffCommand&);
+template void scoreMap<3>(const HausdorffCommand&);
 
 }  // namespace gaussmap::app

@@ -44,15 +44,25 @@ class StatisticsTable {
   std::ostringstream text_;
 };
 
+/// Returns a scan as the mapper takes it. For a planar map, its beams lie in the plane.
+template <int D>
+Scan scanFor(const Pcd2mapOptions& options, const Scans& scans, std::size_t index, const AccumulateOptions& reading) {
+  return D == 2 ? sweepOf(scans, index, options.slice, reading.min_range) : scans.read(index);
+}
+
 }  // namespace
 
+template <int D>
 WrittenMap buildOnline(const Pcd2mapOptions& options, const Scans& scans, const AccumulateOptions& reading,
                        MapTask& task) {
   const OnlineInput& online = options.online;
-  std::vector<RemovedCluster<3>> removed;
-  OnlineMapper<3>::Removed note;
-  if (!online.removed.empty()) note = [&](const RemovedCluster<3>& cluster) { removed.push_back(cluster); };
-  OnlineMapper<3> mapper(onlineOptions(online, options.map, reading, options.budget), note);
+  std::vector<RemovedCluster<D>> removed;
+  typename OnlineMapper<D>::Removed note;
+  if (!online.removed.empty()) note = [&](const RemovedCluster<D>& cluster) { removed.push_back(cluster); };
+  // The beams of a planar map have no heights, so the limits of a slice do not apply to them.
+  const AccumulateOptions limits =
+      D == 2 ? accumulateOptions(options.input, options.map.resolution, reading.threads) : reading;
+  OnlineMapper<D> mapper(onlineOptions(online, options.map, limits, options.budget), note);
 
   PointCounts counts;
   std::size_t deleted = 0;  // clusters of all scales
@@ -63,7 +73,7 @@ WrittenMap buildOnline(const Pcd2mapOptions& options, const Scans& scans, const 
     const ScanInfo scan = scans.info(i);
     OnlineStatistics statistics;
     try {
-      statistics = mapper.add(scans.read(i));
+      statistics = mapper.add(scanFor<D>(options, scans, i, reading));
     } catch (const std::out_of_range& error) {
       throw std::out_of_range(scan.name + ": " + error.what());
     }
@@ -72,18 +82,20 @@ WrittenMap buildOnline(const Pcd2mapOptions& options, const Scans& scans, const 
     deleted += statistics.deleted;
     bar.show({i + 1, scans.size(), counts.accepted, 0});
   }
-  requirePoints(counts, scans);
+  requirePoints(counts, scans, options.slice);
   if (!online.stats.empty()) writeText(online.stats, table.text());
   if (!online.removed.empty()) writeRemoved(online.removed, removed);
 
-  Json step = historyOf(scans, counts);
+  Json step = historyOf(scans, counts, options.slice);
   step["online"] = true;
   step["budget"] = options.budget.budget;
   step["deleted"] = deleted;
   addHistory(task.metadata, step);
-  const GaussianMap<3> map = mapper.map();
+  const GaussianMap<D> map = mapper.map();
   task.save(map);
   return {counts, scalesOf(map)};
 }
+template WrittenMap buildOnline<2>(const Pcd2mapOptions&, const Scans&, const AccumulateOptions&, MapTask&);
+template WrittenMap buildOnline<3>(const Pcd2mapOptions&, const Scans&, const AccumulateOptions&, MapTask&);
 
 }  // namespace gaussmap::app

@@ -8,6 +8,7 @@
 #include "commands/budget.h"
 #include "commands/map_task.h"
 #include "commands/pcd2map/online_options.h"
+#include "commands/planar_input.h"
 #include "commands/scan_input.h"
 #include "gaussmap/map/grid.h"
 
@@ -22,6 +23,8 @@ struct Pcd2mapOptions {
   std::string update;                   // map file to add the scans to; empty: build a new one
   std::optional<double> update_budget;  // with `update`; nullopt: the budget of the map
   std::string max_memory;               // empty: no limit
+  bool planar = false;                  // build a planar map
+  Slice slice;                          // of 3-D scans, for a planar map
   bool json = false;
 };
 
@@ -31,13 +34,16 @@ struct WrittenMap {
   Json scales = Json::array();
 };
 
-// Four ways to turn scans into a map. The first three write the output file of the command, with its history.
+// Four ways to turn scans into a map of D dimensions. The first three write the output file of the command, with its
+// history.
 
 /// Builds the map in memory.
+template <int D>
 WrittenMap buildInMemory(const Pcd2mapOptions& options, const Scans& scans, const AccumulateOptions& reading,
                          MapTask& task);
 
 /// Builds the map tile by tile, with a temporary file. The map is the same, but without error curves.
+template <int D>
 WrittenMap buildWithinMemory(const Pcd2mapOptions& options, const Scans& scans, const AccumulateOptions& reading,
                              const MapTask& task);
 /// Throws UsageError if --max-memory is combined with options that need the whole map in memory.
@@ -45,10 +51,11 @@ void checkMemory(const Pcd2mapOptions& options);
 
 /// Builds the map scan by scan, with occupancy. Writes the statistics and the deleted clusters if --stats and --removed
 /// are given.
+template <int D>
 WrittenMap buildOnline(const Pcd2mapOptions& options, const Scans& scans, const AccumulateOptions& reading,
                        MapTask& task);
 
-/// Adds the scans to an existing map file and prints a report.
+/// Adds the scans to an existing map file and prints a report. Throws UsageError if options do not suit its dimension.
 void updateFromScans(const Pcd2mapOptions& options);
 
 }  // namespace gaussmap::app

@@ -12,6 +12,7 @@
 #include "common/report.h"
 #include "gaussmap/io/gmap/map_reader.h"
 #include "gaussmap/io/gmap/map_update.h"
+#include "gaussmap/io/pcd/map_pcd.h"
 #include "gaussmap/map/queries.h"
 #include "map/neighbour_keys.h"
 
@@ -38,12 +39,15 @@ Recorded recordedIn(const MapMetadata& metadata) {
   return recorded;
 }
 
-AccumulatedScans accumulate(const Pcd2mapOptions& options, const Scans& scans, double resolution) {
+template <int D>
+AccumulatedScans<D> accumulate(const Pcd2mapOptions& options, const Scans& scans, double resolution) {
   ProgressBar bar;
-  AccumulatedScans accumulated =
-      accumulateScans(scans, accumulateOptions(options.input, resolution, options.budget.refine.threads),
-                      [&](const AccumulateProgress& progress) { bar.show(progress); });
-  requirePoints(accumulated.counts, scans);
+  AccumulateOptions reading = accumulateOptions(options.input, resolution, options.budget.refine.threads);
+  if (D == 2) reading = withSlice(reading, options.slice, options.input.crop);
+  AccumulatedScans<D> accumulated = readChecked<D>(scans, options.slice, [&](const Scans& checked) {
+    return accumulateScans<D>(checked, reading, [&](const AccumulateProgress& progress) { bar.show(progress); });
+  });
+  requirePoints(accumulated.counts, scans, options.slice);
   return accumulated;
 }
 
@@ -64,23 +68,25 @@ void report(const Pcd2mapOptions& options, const Scans& scans, const PointCounts
                       {"bytes", bytes},
                       {"seconds", seconds}});
   }
-  std::cout << options.update << ": " << summaryOf(scans, counts) << " added, Gaussians per scale "
+  std::cout << options.update << ": " << summaryOf(scans, counts, options.slice) << " added, Gaussians per scale "
             << perScale(update.gaussians) << ", " << update.tiles_written << " of " << update.tiles
             << " tiles written, " << humanBytes(bytes) << ", " << secondsText(seconds) << " s\n";
 }
 
 /// Returns the names of scans that have no point in or beside a coarsest cell of the map.
-std::vector<std::string> farScans(const FileScans& scans, const GaussianMap<3>& coarse) {
+template <int D>
+std::vector<std::string> farScans(const FileScans& scans, const GaussianMap<D>& coarse) {
   constexpr double kFarthest = 2147483000.0;  // cells: beyond, a point has no key
   const int s = coarse.scales() - 1;
   std::vector<std::string> far;
   for (std::size_t i = 0; i < scans.size(); ++i) {
     const std::vector<Eigen::Vector3d> points = scans.sample(i);
-    const bool is_near = std::any_of(points.begin(), points.end(), [&](const Eigen::Vector3d& point) {
+    const bool is_near = std::any_of(points.begin(), points.end(), [&](const Eigen::Vector3d& in_space) {
+      const Vector<D> point = in_space.head<D>();
       if (!(point.cwiseAbs().maxCoeff() < kFarthest * coarse.grid().side(s))) return false;
       bool found = false;
       detail::forKeysAround(coarse.grid().keyOf(point, s),
-                            [&](const CellKey<3>& near) { found = found || coarse.find(near, s); });
+                            [&](const CellKey<D>& near) { found = found || coarse.find(near, s); });
       return found;
     });
     if (!is_near && !points.empty()) far.push_back(scans.files()[i].path.string());
@@ -88,12 +94,13 @@ std::vector<std::string> farScans(const FileScans& scans, const GaussianMap<3>& 
   return far;
 }
 
+template <int D>
 void warnOfFarScans(const FileScans& scans, const std::string& map) {
-  const Vector<3> infinite = Vector<3>::Constant(std::numeric_limits<double>::infinity());
-  MapReader<3> reader(map);
-  const GaussianMap<3> coarse = reader.load({-infinite, infinite}, reader.grid().scales() - 1);
-  const auto extent = extentOf<3>(coarse);
-  const std::vector<std::string> far = farScans(scans, coarse);
+  const Vector<D> infinite = Vector<D>::Constant(std::numeric_limits<double>::infinity());
+  MapReader<D> reader(map);
+  const GaussianMap<D> coarse = reader.load({-infinite, infinite}, reader.grid().scales() - 1);
+  const auto extent = extentOf<D>(coarse);
+  const std::vector<std::string> far = farScans<D>(scans, coarse);
   if (far.empty() || !extent) return;
   warn(far.front() + (far.size() > 1 ? " and " + std::to_string(far.size() - 1) + " more" : "") +
        ": no point lies near the map " + map + ", which covers " + textOf(*extent) +
@@ -116,19 +123,18 @@ void warnOfRepeats(const MapUpdate& update, const std::string& map) {
        " and its points now count twice; if that is not wanted, build the map again without it");
 }
 
-}  // namespace
-
-void updateFromScans(const Pcd2mapOptions& options) {
+template <int D>
+void update(const Pcd2mapOptions& options) {
   const double start = now();
-  const MapOptions map = growingMapOptions<3>(options.update);
+  const MapOptions map = growingMapOptions<D>(options.update);
   const MapMetadata before = loadMetadata(options.update);
   const Recorded recorded = recordedIn(before);
   const FileScans scans = openScans(options.input, options.budget.refine.threads);
   noteDroppedFields(scans);
-  const AccumulatedScans accumulated = accumulate(options, scans, map.resolution);
+  const AccumulatedScans<D> accumulated = accumulate<D>(options, scans, map.resolution);
 
   warnOfCoordinates(scans, map.resolution);
-  warnOfFarScans(scans, options.update);
+  warnOfFarScans<D>(scans, options.update);
 
   BudgetInput merging = options.budget;
   if (!merging.cost) merging.cost = recorded.cost;
@@ -142,18 +148,28 @@ void updateFromScans(const Pcd2mapOptions& options) {
       !system.empty() && of_map != before.end() && of_map->second != system)
     warn(nameOf(scans) + ": the coordinate reference system differs from that of " + options.update +
          ", which the map keeps; convert the scans if the systems are not the same");
-  Json step = historyOf(scans, accumulated.counts);
+  Json step = historyOf(scans, accumulated.counts, options.slice);
   step["update"] = true;
   step["method"] = "agglomerate";
   if (updating.budget) step["budget"] = *updating.budget;
   if (merging.cost) step["cost"] = *merging.cost;
-  const MapUpdate update = updateMap<3>(options.update, accumulated.moments, updating, [&](MapMetadata& metadata) {
+  const MapUpdate update = updateMap<D>(options.update, accumulated.moments, updating, [&](MapMetadata& metadata) {
     metadata.erase("error_curves");  // they describe the old map
     addHistory(metadata, step);
     if (!system.empty()) metadata.emplace(kCoordinateSystemEntry, system);
   });
   warnOfRepeats(update, options.update);
   report(options, scans, accumulated.counts, update, start);
+}
+
+}  // namespace
+
+void updateFromScans(const Pcd2mapOptions& options) {
+  const int dimensions = dimensionsOf(options.update);
+  if (dimensions == 3 && (options.planar || !options.slice.empty()) && isMap(options.update))
+    throw UsageError(std::string(options.planar ? "--planar" : "--slice") + ": " + options.update +
+                     " is a 3-D map; scans are added to it as they are");
+  forDimensions(dimensions, [&](auto d) { update<d()>(options); });
 }
 
 }  // namespace gaussmap::app

@@ -19,6 +19,7 @@ void checkMemory(const Pcd2mapOptions& options) {
                      " bytes are needed");
 }
 
+template <int D>
 WrittenMap buildWithinMemory(const Pcd2mapOptions& options, const Scans& scans, const AccumulateOptions& reading,
                              const MapTask& task) {
   BuildMapFileOptions building;
@@ -28,18 +29,20 @@ WrittenMap buildWithinMemory(const Pcd2mapOptions& options, const Scans& scans, 
   building.refine.merge_cost = mergeCost(options.budget);
   building.save = {options.output.force, SaveOptions().compression, options.budget.refine.threads};
   const auto metadataOf = [&](const PointCounts& counts) {
-    requirePoints(counts, scans);
+    requirePoints(counts, scans, options.slice);
     MapMetadata metadata = task.metadata;
     // The same step as that of refineWithin(), so that the files are identical.
-    const std::string details = detailsOf(options.budget, historyOf(scans, counts));
+    const std::string details = detailsOf(options.budget, historyOf(scans, counts, options.slice));
     recordStep(metadata, refineStep(building.budget, building.refine, details));
     return metadata;
   };
   ProgressBar bar;
-  const BuiltMapFile built = buildMapFile(scans, reading, options.map, options.output.path, metadataOf, building,
-                                          [&](const AccumulateProgress& progress) { bar.show(progress); });
+  const BuiltMapFile built = readChecked<D>(scans, options.slice, [&](const Scans& checked) {
+    return buildMapFile<D>(checked, reading, options.map, options.output.path, metadataOf, building,
+                           [&](const AccumulateProgress& progress) { bar.show(progress); });
+  });
   WrittenMap written{built.counts, Json::array()};
-  const Grid<3> grid(options.map);
+  const Grid<D> grid(options.map);
   for (int s = 0; s < grid.scales(); ++s)
     written.scales.push_back({{"scale", s},
                               {"cell_side", grid.side(s)},
@@ -48,5 +51,7 @@ WrittenMap buildWithinMemory(const Pcd2mapOptions& options, const Scans& scans, 
                               {"weight", static_cast<double>(built.counts.accepted)}});
   return written;
 }
+template WrittenMap buildWithinMemory<2>(const Pcd2mapOptions&, const Scans&, const AccumulateOptions&, const MapTask&);
+template WrittenMap buildWithinMemory<3>(const Pcd2mapOptions&, const Scans&, const AccumulateOptions&, const MapTask&);
 
 }  // namespace gaussmap::app

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "commands/planar_input.h"
 #include "common/command.h"
 #include "common/report.h"
 
@@ -34,17 +35,8 @@ LaserScans readLogs(const std::vector<std::string>& paths) {
 }
 
 LaserScans readPcds(const LaserInput& input) {
-  PlanarScanOptions options;
-  const AccumulateOptions limits = accumulateOptions(input.scans, MapOptions().resolution, 0);
-  options.max_range = limits.max_range;
-  options.min_range = limits.min_range;
-  options.crop = limits.crop;
-  if (!input.slice.empty()) {
-    options.slice = true;
-    options.z_min = input.slice[0];
-    options.z_max = input.slice[1];
-    if (options.z_min > options.z_max) throw UsageError("--slice: the second height is below the first");
-  }
+  const PlanarScanOptions options =
+      planarOptions(input.slice, accumulateOptions(input.scans, MapOptions().resolution, 0));
   LaserScans all;
   const FileScans scans = openScans(input.scans, 0);
   all.scans = planarScans(scans, options);

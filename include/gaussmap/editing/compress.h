@@ -38,6 +38,7 @@ struct CompressOptions {
 /// Adjacent reference means are about one finest cell apart. A max_error below half the side of a finest cell therefore
 /// deletes almost nothing. Throws std::invalid_argument if max_error is not positive and finite, if `samples` is 0, or
 /// if the map is already compressed. A compressed map does not have all the reference means any more.
-GAUSSMAP_API GaussianMap<3> compress(GaussianMap<3> map, double max_error, const CompressOptions& options = {});
+template <int D>
+GAUSSMAP_API GaussianMap<D> compress(GaussianMap<D> map, double max_error, const CompressOptions& options = {});
 
 }  // namespace gaussmap

@@ -32,7 +32,6 @@ struct SimplifyOptions {
 /// - The budget or an option is out of range; the message names it.
 /// - MaxGaussians: the map does not have a listed scale, or a limit is below the number of cells of the scale.
 /// - MaxBytes: a map with one Gaussian per cell exceeds the limit; the message gives the bytes needed.
-/// - The budget is MaxBytes or MaxError, and D = 2.
 template <int D>
 GAUSSMAP_API RefineResult<D> simplify(GaussianMap<D> map, const Budget& budget, const SimplifyOptions& options = {});
 

@@ -37,7 +37,7 @@ struct HausdorffResult {
 };
 
 /// The distance of every single point, before they are summarised. In hausdorff(), a is the subject and b is the
-/// reference.
+/// reference. The points of planar maps and planar clouds have z = 0.
 struct PointDistances {
   std::vector<Vector<3>> subject;  ///< points of the compared cloud, or samples of the compared map [m]
   std::vector<double> forward;     ///< per point of the subject: distance to the reference [m]
@@ -48,7 +48,8 @@ struct PointDistances {
 ///
 /// If `distances` is given, it receives the single distances. `threads`: 0 = all cores. Throws std::invalid_argument if
 /// a set is empty or a point is not finite; the message gives the index of the point.
-GAUSSMAP_API HausdorffResult hausdorff(const std::vector<Vector<3>>& a, const std::vector<Vector<3>>& b,
+template <int D = 3>
+GAUSSMAP_API HausdorffResult hausdorff(const std::vector<Vector<D>>& a, const std::vector<Vector<D>>& b,
                                        int threads = 0, PointDistances* distances = nullptr);
 
 /// The two maxima of hausdorff().
@@ -63,7 +64,8 @@ struct HausdorffMaxima {
 /// Only a point whose distance can exceed the largest distance so far needs a search. Most points, and even whole boxes
 /// of points, are excluded without one. Nearly all the time is spent on sorting the points. `threads`: 0 = all cores.
 /// Throws like hausdorff().
-GAUSSMAP_API HausdorffMaxima hausdorffMaxima(const std::vector<Vector<3>>& a, const std::vector<Vector<3>>& b,
+template <int D = 3>
+GAUSSMAP_API HausdorffMaxima hausdorffMaxima(const std::vector<Vector<D>>& a, const std::vector<Vector<D>>& b,
                                              int threads = 0);
 
 /// The distances between a map and a reference. Forward is from the map's samples to the reference (surfaces that only
@@ -78,11 +80,15 @@ struct MapHausdorff {
 
 /// A reference for comparisons with maps and clouds. It is sorted once and serves any number of comparisons. It is a
 /// plain value, and copies are cheap.
+///
+/// A reference lies in space. Planar points, samples and maps (D = 2) lie in the plane z = 0, so the distances between
+/// them are those in the plane. They can also be compared with a reference in space, for example with a mesh.
 class GAUSSMAP_API Reference {
  public:
   /// Makes a reference of points [m]. Throws std::invalid_argument if there are none or one is not finite; the message
   /// gives its index.
-  explicit Reference(std::vector<Vector<3>> points);
+  template <int D = 3>
+  explicit Reference(std::vector<Vector<D>> points);
   /// Makes a reference of the surface of a mesh.
   ///
   /// Forward distances are exact distances from the surface. Backward distances start from `samples` points on the
@@ -90,14 +96,16 @@ class GAUSSMAP_API Reference {
   Reference(const TriangleMesh& mesh, std::size_t samples, std::uint64_t seed = 1);
   /// Makes a reference of the samples of another map. MapHausdorff::within_two_sigma then compares only the samples
   /// within 2 sigma of their means, in both maps. Throws std::invalid_argument if there are no samples.
-  explicit Reference(const MapSamples<3>& samples);
+  template <int D>
+  explicit Reference(const MapSamples<D>& samples);
 
   /// Returns the points from which the backward distances start [m].
   const std::vector<Vector<3>>& points() const;
 
   /// Compares a cloud with the reference. If `distances` is given, it receives the single distances. Throws like
   /// hausdorff().
-  HausdorffResult compare(const std::vector<Vector<3>>& subject, int threads = 0,
+  template <int D = 3>
+  HausdorffResult compare(const std::vector<Vector<D>>& subject, int threads = 0,
                           PointDistances* distances = nullptr) const;
 
   /// Compares samples of one scale of a map with the reference, Yguel 2009 sec. 6.
@@ -106,22 +114,26 @@ class GAUSSMAP_API Reference {
   /// the tails of the Gaussians. Therefore compare maps with equal options, or by q99, or by `within_two_sigma`, which
   /// leaves out the tails. If `distances` is given, it receives the single distances. Throws std::invalid_argument if
   /// the scale is empty, and std::out_of_range if the map does not have the scale.
-  MapHausdorff compare(const GaussianMap<3>& map, int scale, const SampleOptions& options = {},
+  template <int D>
+  MapHausdorff compare(const GaussianMap<D>& map, int scale, const SampleOptions& options = {},
                        PointDistances* distances = nullptr) const;
   /// Compares samples of the leaves of a map with the reference. Use it for a compressed map as a whole. It works like
   /// compare() for one scale, with the samples of sampleLeaves().
-  MapHausdorff compareLeaves(const GaussianMap<3>& map, const SampleOptions& options = {},
+  template <int D>
+  MapHausdorff compareLeaves(const GaussianMap<D>& map, const SampleOptions& options = {},
                              PointDistances* distances = nullptr) const;
 
  private:
-  MapHausdorff compareSamples(const MapSamples<3>& samples, int threads, PointDistances* distances) const;
+  template <int D>
+  MapHausdorff compareSamples(const MapSamples<D>& samples, int threads, PointDistances* distances) const;
 
   struct Parts;
   std::shared_ptr<const Parts> parts_;
 };
 
 /// Compares one scale of a map with reference points [m, map frame]. Throws like Reference and Reference::compare().
-GAUSSMAP_API MapHausdorff evaluateMap(const GaussianMap<3>& map, int scale, const std::vector<Vector<3>>& reference,
+template <int D>
+GAUSSMAP_API MapHausdorff evaluateMap(const GaussianMap<D>& map, int scale, const std::vector<Vector<D>>& reference,
                                       const SampleOptions& options = {});
 
 }  // namespace gaussmap

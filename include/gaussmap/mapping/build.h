@@ -35,19 +35,27 @@ struct AccumulateProgress {
 using ReportProgress = std::function<void(const AccumulateProgress&)>;
 
 /// The result of accumulateScans().
+template <int D = 3>
 struct AccumulatedScans {
-  MomentGrid<3> moments;  ///< exact moments per cell, map frame
+  /// A function that receives the moments of a part of the points, see accumulateScansInParts().
+  using TakePart = std::function<void(const MomentGrid<D>&)>;
+
+  MomentGrid<D> moments;  ///< exact moments per cell, map frame
   PointCounts counts;     ///< numbers of accepted and dropped points
 };
 
 /// Reads scans and sorts their points into cells. The memory grows with the map, not with the number of scans.
 ///
+/// For D = 2, the accepted points lose their z coordinate in the map frame. AccumulateOptions::crop selects a slice of
+/// scans in space, and the range limits apply to the distance in space.
+///
 /// `progress` is called after every scan, one call at a time. Throws:
 /// - FileError if a file is damaged
 /// - std::out_of_range if a point lies beyond the range of the cell indices; the message gives the scan and the point
 /// - std::invalid_argument if an option is out of range; the message names the option
-GAUSSMAP_API AccumulatedScans accumulateScans(const Scans& scans, const AccumulateOptions& options,
-                                              const ReportProgress& progress = {});
+template <int D = 3>
+GAUSSMAP_API AccumulatedScans<D> accumulateScans(const Scans& scans, const AccumulateOptions& options,
+                                                 const ReportProgress& progress = {});
 
 /// Reads scans and sorts their points into cells, within limited memory.
 ///
@@ -55,15 +63,18 @@ GAUSSMAP_API AccumulatedScans accumulateScans(const Scans& scans, const Accumula
 /// thread exceeds its share of this, the thread passes the grid to `take` and continues with an empty grid. At the end,
 /// the remaining grids are passed to `take`. The calls of `take` do not overlap and have no fixed order. Each accepted
 /// point is in exactly one of the grids. Throws like accumulateScans().
+template <int D = 3>
 GAUSSMAP_API PointCounts accumulateScansInParts(const Scans& scans, const AccumulateOptions& options,
                                                 std::size_t max_bytes,
-                                                const std::function<void(const MomentGrid<3>&)>& take,
+                                                const typename AccumulatedScans<D>::TakePart& take,
                                                 const ReportProgress& progress = {});
 
 /// Returns the accepted points of all scans, in their order [m, map frame]. A map can be compared with these points.
-/// AccumulateOptions::resolution and AccumulateOptions::threads are not used. Throws FileError if a file is damaged,
-/// and std::invalid_argument like accumulateScans().
-GAUSSMAP_API std::vector<Vector<3>> readPoints(const Scans& scans, const AccumulateOptions& options);
+/// For D = 2, the points lose their z coordinate as in accumulateScans(). AccumulateOptions::resolution and
+/// AccumulateOptions::threads are not used. Throws FileError if a file is damaged, and std::invalid_argument like
+/// accumulateScans().
+template <int D = 3>
+GAUSSMAP_API std::vector<Vector<D>> readPoints(const Scans& scans, const AccumulateOptions& options);
 
 /// Builds the map from moments per cell, with one Gaussian per cell at every scale.
 ///
@@ -91,9 +102,11 @@ GAUSSMAP_API GaussianMap<D> build(const MapScale<D>& finest, const MapOptions& o
 
 /// Builds the map from scans, with one Gaussian per cell at every scale.
 ///
-/// The resolution of `options` replaces that of `reading`. If `counts` is given, it receives the numbers of accepted
-/// and dropped points. Throws like accumulateScans() and build() from moments.
-GAUSSMAP_API GaussianMap<3> build(const Scans& scans, const MapOptions& options = {}, AccumulateOptions reading = {},
+/// For D = 2, points lose their z coordinate as in accumulateScans(). The resolution of `options` replaces that of
+/// `reading`. If `counts` is given, it receives the numbers of accepted and dropped points. Throws like
+/// accumulateScans() and build() from moments.
+template <int D = 3>
+GAUSSMAP_API GaussianMap<D> build(const Scans& scans, const MapOptions& options = {}, AccumulateOptions reading = {},
                                   PointCounts* counts = nullptr);
 
 }  // namespace gaussmap

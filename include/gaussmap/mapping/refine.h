@@ -76,17 +76,19 @@ struct MaxGaussians {
 };
 
 /// A budget: the maximum size of the map in bytes. As with PerCell, the number of Gaussians per scale is a multiple of
-/// its occupied cells. The multiple is the largest one that keeps the limit, to within 2 %. D = 3 only.
+/// its occupied cells. The multiple is the largest one that keeps the limit, to within 2 %.
 struct MaxBytes {
   std::uintmax_t bytes = 0;  ///< maximum size of the result
   /// A function that returns the size of a result [bytes]. It must be set; for example, maxFileBytes() returns the size
   /// of the map file. While refine() searches for the multiple, RefineResult::curves holds placeholders, because
   /// measuring takes long. Their text is at least as long as that of the final curves.
   std::function<std::uintmax_t(const RefineResult<3>&)> size_of;
+  /// The same for planar maps. A budget needs only the function for the dimension of the map.
+  std::function<std::uintmax_t(const RefineResult<2>&)> planar_size_of = {};
 };
 
 /// A budget: the maximum error. Each scale gets the smallest number of Gaussians for which ErrorPoint::q95 does not
-/// exceed a distance, to within 0.5 % of this number. D = 3 only.
+/// exceed a distance, to within 0.5 % of this number.
 struct MaxError {
   double metres = 0.0;     ///< maximum of ErrorPoint::q95 [m], > 0
   ErrorSampling sampling;  ///< the samples from which the error is measured
@@ -109,7 +111,7 @@ struct GAUSSMAP_API RefineOptions {
   RefineMethod method = RefineMethod::Agglomerate;  ///< how the clusters of a coarse cell are found
   // Agglomerate only:
   MergeCost merge_cost = MergeCost::Volume;  ///< which pair is merged next
-  std::optional<CurveOptions> curves;        ///< measures the error of other budgets; D = 3 only
+  std::optional<CurveOptions> curves;        ///< measures the error of other budgets
   // Insert only:
   int queue = 0;       ///< p, number of cells refined at a time, >= 1; 0: 1/250 of the scale's cells, at least 4
   int max_swaps = 20;  ///< maximum number of rounds of the swap loop per inserted cluster (see insertCluster()), >= 0
@@ -150,8 +152,8 @@ struct GAUSSMAP_API RefineOptions {
 /// stays the number of points.
 ///
 /// Error curves, MaxBytes and MaxError need RefineMethod::Agglomerate, because one dendrogram gives the clusters for
-/// all budgets. They also need D = 3. The curve of a scale is measured after the finer scale has been refined. A scale
-/// that cannot reach MaxError gets one cluster per finer Gaussian and is listed in RefineResult::not_reached.
+/// all budgets. The curve of a scale is measured after the finer scale has been refined. A scale that cannot reach
+/// MaxError gets one cluster per finer Gaussian and is listed in RefineResult::not_reached.
 ///
 /// Throws std::invalid_argument in these cases:
 /// - A budget or an option is out of range; the message names it.

@@ -68,4 +68,26 @@ GAUSSMAP_API RegistrationResult registerScan(const std::vector<Eigen::Vector3d>&
 GAUSSMAP_API RegistrationResult registerMap(const GaussianMap<3>& source, const GaussianMap<3>& map,
                                             const Pose& guess = {}, const RegistrationOptions& options = {});
 
+/// Registers a scan to a planar map: refines x, y and the heading of the guess.
+///
+/// It works like registerScan() in space, in the plane. `points` are in the scan frame [m]; non-finite points are
+/// ignored. The tilt of the guess (roll and pitch) is applied to them, and then they lose their height; to register a
+/// slice of a scan in space, give only the points of the slice. The pose of the result has exactly the z and the tilt
+/// of the guess: a guess with a rotation about z gives a rotation about z. In the covariance and in
+/// RegistrationResult::least_observable, the rows and columns of z and of the rotations about x and y are zero.
+/// RegistrationResult::degenerate judges only x, y and the heading.
+///
+/// Unobservable directions keep the guess, with a standard deviation of the RMS range of the scan (heading: 1 rad).
+/// They are found from the directions of the walls in the map, at the scale whose Gaussians look most like pieces of
+/// walls. A direction is unobservable if the walls give at most RegistrationOptions::degenerate times the information
+/// of the best direction. `threads` is not used. Throws like registerScan() in space.
+GAUSSMAP_API RegistrationResult registerScan(const std::vector<Eigen::Vector3d>& points, const GaussianMap<2>& map,
+                                             const Pose& guess = {}, const RegistrationOptions& options = {});
+
+/// Registers the planar map `source` to the planar map `map`. It works like registerScan() in the plane, with the
+/// Gaussians of `source` as in registerMap() in space. Also throws std::invalid_argument if the guess is not planar
+/// (z = 0, rotation about z), so the result is a motion for transformMap().
+GAUSSMAP_API RegistrationResult registerMap(const GaussianMap<2>& source, const GaussianMap<2>& map,
+                                            const Pose& guess = {}, const RegistrationOptions& options = {});
+
 }  // namespace gaussmap

@@ -29,10 +29,11 @@ struct GAUSSMAP_API Pose2 {
 
 /// One sweep of a planar laser. The beams are in the order of their bearings.
 struct LaserScan {
-  Pose2 pose;                    ///< sensor frame to map frame
-  std::vector<double> bearings;  ///< per beam: bearing [rad], sensor frame, ascending
-  std::vector<double> ranges;    ///< per beam: range [m]; see returned()
-  double max_range = 80.0;       ///< limit of the ranges [m], see returned()
+  Pose2 pose;                                 ///< sensor frame to map frame
+  std::vector<double> bearings;               ///< per beam: bearing [rad], sensor frame, ascending
+  std::vector<double> ranges;                 ///< per beam: range [m]; see returned()
+  double max_range = 80.0;                    ///< limit of the ranges [m], see returned()
+  std::optional<double> time = std::nullopt;  ///< time of the sweep [s]; std::nullopt if unknown
 
   /// Returns true if a beam has a return: its range is finite, above 0 and below max_range.
   bool returned(std::size_t beam) const {

@@ -49,12 +49,22 @@ struct SpilledCuts {
 };
 
 /// A compressed tile, on disk.
+template <int D>
 struct SpilledTile {
-  TileRow<3> row;  // without its bytes
+  TileRow<D> row;  // without its bytes
   SpillFile::Span bytes;
 };
 
+template <typename Value>
+std::vector<Value> arrayOf(const SpillFile& file, const SpillFile::Span& span) {
+  std::vector<Value> values;
+  std::size_t place = 0;
+  takeArray(file.read(span), place, values);
+  return values;
+}
+
 /// Computes how many clusters each cell of a scale gets.
+template <int D>
 class ScaleBudget {
  public:
   ScaleBudget(const SpillFile& file, const std::vector<SpilledCuts>& cuts, const MapOptions& options, int scale,
@@ -66,28 +76,20 @@ class ScaleBudget {
     if (threshold_.ties > 0) shareTies(file, cuts, options, scale);
   }
 
-  std::size_t partsOf(const CellKey<3>& key, const std::vector<double>& gains) const {
+  std::size_t partsOf(const CellKey<D>& key, const std::vector<double>& gains) const {
     const auto falling = [](double a, double b) { return a > b; };
     const auto above = std::lower_bound(gains.begin(), gains.end(), threshold_.gain, falling) - gains.begin();
     const auto ties = ties_.find(key);
     return 1 + static_cast<std::size_t>(above) + (ties == ties_.end() ? 0 : ties->second);
   }
 
-  template <typename Value>
-  static std::vector<Value> arrayOf(const SpillFile& file, const SpillFile::Span& span) {
-    std::vector<Value> values;
-    std::size_t place = 0;
-    takeArray(file.read(span), place, values);
-    return values;
-  }
-
  private:
   /// Of equal gains, those of the first cells in key order are taken, as in partsPerCell().
   void shareTies(const SpillFile& file, const std::vector<SpilledCuts>& cuts, const MapOptions& options, int scale) {
-    std::vector<CellKey<3>> keys;
+    std::vector<CellKey<D>> keys;
     std::vector<std::size_t> counts;
     for (const SpilledCuts& batch : cuts) {
-      const auto cells = arrayOf<CellKey<3>>(file, batch.keys);
+      const auto cells = arrayOf<CellKey<D>>(file, batch.keys);
       const auto sizes = arrayOf<std::uint32_t>(file, batch.sizes);
       const auto gains = arrayOf<double>(file, batch.gains);
       std::size_t first = 0;
@@ -101,7 +103,7 @@ class ScaleBudget {
       }
     }
     std::size_t left = threshold_.ties;
-    for (const std::uint32_t from : keyOrder<3>(keys, options.ratio, options.scales - 1 - scale)) {
+    for (const std::uint32_t from : keyOrder<D>(keys, options.ratio, options.scales - 1 - scale)) {
       ties_[keys[from]] = std::min(left, counts[from]);
       left -= std::min(left, counts[from]);
       if (left == 0) break;
@@ -109,9 +111,10 @@ class ScaleBudget {
   }
 
   GainThreshold threshold_;
-  std::map<CellKey<3>, std::size_t> ties_;
+  std::map<CellKey<D>, std::size_t> ties_;
 };
 
+template <int D>
 class Builder {
  public:
   Builder(const MapOptions& map, const std::filesystem::path& folder, const BuildMapFileOptions& options)
@@ -120,9 +123,9 @@ class Builder {
         span_(tileSpan(map)),
         batch_bytes_(options.max_memory / kBatchesHeld),
         spill_(folder),
-        cells_(std::make_unique<SpilledCells>(spill_, grid_.options(), 0)) {}
+        cells_(std::make_unique<SpilledCells<D>>(spill_, grid_.options(), 0)) {}
 
-  void add(const MomentGrid<3>& moments) { cells_->add(moments); }
+  void add(const MomentGrid<D>& moments) { cells_->add(moments); }
 
   void finishScales() {
     for (int s = 0; s < grid_.scales(); ++s) {
@@ -132,7 +135,7 @@ class Builder {
       if (s + 1 == grid_.scales()) {
         for (const auto& tiles : cells_->batches(batch_bytes_)) keepTiles(cells_->load(tiles, threads()), nullptr, s);
       } else {
-        auto coarser = std::make_unique<SpilledCells>(spill_, grid_.options(), s + 1);
+        auto coarser = std::make_unique<SpilledCells<D>>(spill_, grid_.options(), s + 1);
         finishScale(s, *coarser);
         cells_ = std::move(coarser);
       }
@@ -141,15 +144,15 @@ class Builder {
 
   void write(Database& database, const MapMetadata& metadata) const {
     beginMap(database);
-    MapMetadata entries = ownEntries<3>(grid_.options(), cell_counts_, gaussian_counts_);
+    MapMetadata entries = ownEntries<D>(grid_.options(), cell_counts_, gaussian_counts_);
     entries["grows"] = "1";
     entries["occupancy"] = "0";
     for (const auto& [name, value] : metadata) entries[kUserPrefix + name] = value;
     writeEntries(database, entries);
-    TileInsert<3> insert(database);
+    TileInsert<D> insert(database);
     for (int s = grid_.scales() - 1; s >= 0; --s)
-      for (const SpilledTile& tile : tiles_[static_cast<std::size_t>(s)]) {
-        TileRow<3> row = tile.row;
+      for (const SpilledTile<D>& tile : tiles_[static_cast<std::size_t>(s)]) {
+        TileRow<D> row = tile.row;
         row.bytes = spill_.read(tile.bytes);
         insert.write(row);
       }
@@ -168,17 +171,17 @@ class Builder {
 
   /// Builds the next coarser scale. Then stores the tiles of scale s, because the parents of their Gaussians
   /// are now known.
-  void finishScale(int s, SpilledCells& coarser) {
+  void finishScale(int s, SpilledCells<D>& coarser) {
     const auto batches = cells_->batches(batch_bytes_);
     std::vector<SpilledCuts> cuts;
-    std::optional<ScaleBudget> budget;
+    std::optional<ScaleBudget<D>> budget;
     if (refines()) {
       std::size_t coarse_cells = 0, gaussians = 0;
       for (const auto& tiles : batches) {
         giveBackMemory();
-        CellBatch batch = cells_->load(tiles, threads());
-        MapScale<3> coarse = coarsen<3>(batch.cells, grid_, s);
-        const ScalePair<3> pair{batch.cells, coarse, grid_, s};
+        CellBatch<D> batch = cells_->load(tiles, threads());
+        MapScale<D> coarse = coarsen<D>(batch.cells, grid_, s);
+        const ScalePair<D> pair{batch.cells, coarse, grid_, s};
         cuts.push_back(
             keepCuts(coarse.keys, ScaleClusters::under(pair, batch.areas, options_.refine.merge_cost, threads())));
         coarse_cells += coarse.keys.size();
@@ -189,15 +192,15 @@ class Builder {
     }
     for (std::size_t i = 0; i < batches.size(); ++i) {
       giveBackMemory();
-      CellBatch batch = cells_->load(batches[i], threads());
-      MapScale<3> coarse = coarsen<3>(batch.cells, grid_, s);
+      CellBatch<D> batch = cells_->load(batches[i], threads());
+      MapScale<D> coarse = coarsen<D>(batch.cells, grid_, s);
       if (budget) cut(batch, coarse, s, cuts[i], *budget);
       coarser.add(coarse, coarserAreas(batch.cells, batch.areas, coarse.gaussianCount()));
       keepTiles(batch, &coarse, s);
     }
   }
 
-  SpilledCuts keepCuts(const std::vector<CellKey<3>>& keys, const ScaleClusters& clusters) {
+  SpilledCuts keepCuts(const std::vector<CellKey<D>>& keys, const ScaleClusters& clusters) {
     std::vector<std::uint32_t> sizes;
     std::vector<Dendrogram::Merge> merges;
     std::vector<double> gains;
@@ -215,9 +218,10 @@ class Builder {
     return {keep(keys), keep(sizes), keep(merges), keep(gains)};
   }
 
-  void cut(CellBatch& batch, MapScale<3>& coarse, int s, const SpilledCuts& kept, const ScaleBudget& budget) const {
-    const auto sizes = ScaleBudget::arrayOf<std::uint32_t>(spill_, kept.sizes);
-    const auto merges = ScaleBudget::arrayOf<Dendrogram::Merge>(spill_, kept.merges);
+  void cut(CellBatch<D>& batch, MapScale<D>& coarse, int s, const SpilledCuts& kept,
+           const ScaleBudget<D>& budget) const {
+    const auto sizes = arrayOf<std::uint32_t>(spill_, kept.sizes);
+    const auto merges = arrayOf<Dendrogram::Merge>(spill_, kept.merges);
     std::vector<Dendrogram> dendrograms;
     auto next = merges.begin();
     for (const std::uint32_t size : sizes) {
@@ -228,20 +232,20 @@ class Builder {
     std::vector<std::size_t> parts;
     for (std::size_t cell = 0; cell < sizes.size(); ++cell)
       parts.push_back(budget.partsOf(coarse.keys[cell], clusters.gains()[cell]));
-    setClusters(ScalePair<3>{batch.cells, coarse, grid_, s}, clusters.cut(parts), threads());
+    setClusters(ScalePair<D>{batch.cells, coarse, grid_, s}, clusters.cut(parts), threads());
   }
 
   /// Compresses the tiles of a batch and stores them on disk. `coarse` holds the parent cells; nullptr at
   /// the coarsest scale.
-  void keepTiles(const CellBatch& batch, const MapScale<3>* coarse, int s) {
+  void keepTiles(const CellBatch<D>& batch, const MapScale<D>* coarse, int s) {
     const auto at = static_cast<std::size_t>(s);
-    std::vector<TileRow<3>> rows(batch.tiles.size());
+    std::vector<TileRow<D>> rows(batch.tiles.size());
     std::vector<std::uint32_t> first_of_parent;  // per cell: index of the first Gaussian in its parent cell
     for (std::size_t cell = 0; coarse && cell < coarse->keys.size(); ++cell)
       first_of_parent.insert(first_of_parent.end(), coarse->first_child[cell + 1] - coarse->first_child[cell],
                              static_cast<std::uint32_t>(gaussiansOf(*coarse, cell).first));
     parallelFor(rows.size(), threads(), 1, [&](std::size_t i) {
-      Tile<3> tile;
+      Tile<D> tile;
       for (std::size_t cell = i > 0 ? batch.tile_end[i - 1] : 0; cell < batch.tile_end[i]; ++cell) {
         const IndexRange range = gaussiansOf(batch.cells, cell);
         tile.keys.push_back(batch.cells.keys[cell]);
@@ -253,27 +257,28 @@ class Builder {
         }
       }
       rows[i] = {s, batch.tiles[i], tile.keys.size(), tile.gaussianCount(),
-                 encodeTile<3>(tile, {s, batch.tiles[i], span_}, grid_.options(), options_.save.compression)};
+                 encodeTile<D>(tile, {s, batch.tiles[i], span_}, grid_.options(), options_.save.compression)};
     });
-    for (const TileRow<3>& row : rows) {
+    for (const TileRow<D>& row : rows) {
       cell_counts_[at] += row.cells;
       gaussian_counts_[at] += row.gaussians;
       tiles_[at].push_back({{s, row.tile, row.cells, row.gaussians, {}}, spill_.append(row.bytes)});
     }
   }
 
-  const Grid<3> grid_;
+  const Grid<D> grid_;
   const BuildMapFileOptions& options_;
   const std::int32_t span_;
   const std::size_t batch_bytes_;
   SpillFile spill_;
-  std::unique_ptr<SpilledCells> cells_;  // cells of the current scale
+  std::unique_ptr<SpilledCells<D>> cells_;  // cells of the current scale
   std::vector<std::size_t> cell_counts_, gaussian_counts_;
-  std::vector<std::vector<SpilledTile>> tiles_;  // by scale, in x, y, z order
+  std::vector<std::vector<SpilledTile<D>>> tiles_;  // by scale, in x, y, z order
 };
 
 }  // namespace
 
+template <int D>
 BuiltMapFile buildMapFile(const Scans& scans, const AccumulateOptions& reading, const MapOptions& map,
                           const std::filesystem::path& path,
                           const std::function<MapMetadata(const PointCounts&)>& metadataOf,
@@ -290,18 +295,18 @@ BuiltMapFile buildMapFile(const Scans& scans, const AccumulateOptions& reading, 
   if (!std::holds_alternative<PerCell>(options.budget) && !std::holds_alternative<MaxGaussians>(options.budget))
     throw std::invalid_argument("budget: MaxBytes and MaxError need the whole map; build first, then refine");
   if (options.refine.curves) throw std::invalid_argument("curves: need the whole map; build first, then refine");
-  checkRefinement(options.budget, options.refine, Grid<3>(map).scales());
+  checkRefinement(options.budget, options.refine, Grid<D>(map).scales(), D);
   std::error_code error;
   if (!options.save.overwrite && std::filesystem::exists(path, error))
     throw FileError(path, "exists already and is not overwritten");
   AtomicFile file(path);
   const std::filesystem::path folder = file.target().has_parent_path() ? file.target().parent_path() : ".";
-  Builder builder(map, folder, options);
+  Builder<D> builder(map, folder, options);
   const auto share = static_cast<std::size_t>(kShareOfSums * static_cast<double>(options.max_memory));
   BuiltMapFile built;
-  built.counts = accumulateScansInParts(
+  built.counts = accumulateScansInParts<D>(
       scans, reading, share,
-      [&](const MomentGrid<3>& moments) {
+      [&](const MomentGrid<D>& moments) {
         giveBackMemory();  // memory of the previous moments
         builder.add(moments);
       },
@@ -318,5 +323,14 @@ BuiltMapFile buildMapFile(const Scans& scans, const AccumulateOptions& reading, 
   built.gaussians = builder.gaussianCounts();
   return built;
 }
+
+#define GAUSSMAP_INSTANTIATE(D)                                                                \
+  template BuiltMapFile buildMapFile<D>(                                                       \
+      const Scans&, const AccumulateOptions&, const MapOptions&, const std::filesystem::path&, \
+      const std::function<MapMetadata(const PointCounts&)>&, const BuildMapFileOptions&,       \
+      const std::function<void(const AccumulateProgress&)>&);
+GAUSSMAP_INSTANTIATE(2)
+GAUSSMAP_INSTANTIATE(3)
+#undef GAUSSMAP_INSTANTIATE
 
 }  // namespace gaussmap

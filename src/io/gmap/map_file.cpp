@@ -60,6 +60,13 @@ GaussianMap<D> load(const std::filesystem::path& path) {
   }
 }
 
+int mapDimensions(const std::filesystem::path& path) {
+  const int dimensions = numberIn<int>(path, readEntries(openMap(path)), "dimension");
+  if (dimensions != 2 && dimensions != 3)
+    throw FileError(path, "holds a map of dimension " + std::to_string(dimensions) + ", expected 2 or 3");
+  return dimensions;
+}
+
 MapMetadata loadMetadata(const std::filesystem::path& path) {
   return userEntries(readEntries(openMap(path)));
 }

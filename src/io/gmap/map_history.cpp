@@ -117,8 +117,8 @@ std::uintmax_t savedSize(const RefineResult<D>& result, MapMetadata metadata, co
 }
 
 MaxBytes maxFileBytes(std::uintmax_t bytes, const MapMetadata& metadata, const SaveOptions& options) {
-  return {bytes,
-          [metadata, options](const RefineResult<3>& result) { return savedSize<3>(result, metadata, options); }};
+  return {bytes, [metadata, options](const RefineResult<3>& result) { return savedSize<3>(result, metadata, options); },
+          [metadata, options](const RefineResult<2>& result) { return savedSize<2>(result, metadata, options); }};
 }
 
 #define GAUSSMAP_INSTANTIATE(D)                                                                                 \

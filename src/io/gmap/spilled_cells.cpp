@@ -14,11 +14,12 @@ namespace gaussmap::detail {
 namespace {
 
 /// The cells of one tile as they are stored in the file: moments at the finest scale, else Gaussians.
+template <int D>
 struct Piece {
-  std::vector<CellKey<3>> keys;
-  std::vector<CellMoments<3>> moments;
+  std::vector<CellKey<D>> keys;
+  std::vector<CellMoments<D>> moments;
   std::vector<std::uint32_t> counts;
-  std::vector<Gaussian<3>> gaussians;
+  std::vector<Gaussian<D>> gaussians;
   std::vector<double> areas;
 
   std::string bytes() const {
@@ -41,12 +42,13 @@ struct Piece {
 };
 
 /// Merges cells that occur more than once, by adding their moments.
-Piece withEachCellOnce(const Piece& piece) {
+template <int D>
+Piece<D> withEachCellOnce(const Piece<D>& piece) {
   std::vector<std::uint32_t> order(piece.keys.size());
   std::iota(order.begin(), order.end(), 0u);
   std::sort(order.begin(), order.end(),
             [&](std::uint32_t a, std::uint32_t b) { return piece.keys[a] < piece.keys[b]; });
-  Piece once;
+  Piece<D> once;
   for (const std::uint32_t from : order) {
     if (once.keys.empty() || once.keys.back() != piece.keys[from]) {
       once.keys.push_back(piece.keys[from]);
@@ -59,11 +61,12 @@ Piece withEachCellOnce(const Piece& piece) {
 }
 
 /// Appends the cells in key order.
-void appendInOrder(MapScaleBuilder<3>& cells, std::vector<double>& areas, const Piece& piece, const MapOptions& options,
-                   int scale) {
+template <int D>
+void appendInOrder(MapScaleBuilder<D>& cells, std::vector<double>& areas, const Piece<D>& piece,
+                   const MapOptions& options, int scale) {
   std::vector<std::size_t> first(piece.keys.size() + 1, 0);
   for (std::size_t i = 0; i < piece.counts.size(); ++i) first[i + 1] = first[i] + piece.counts[i];
-  for (const std::uint32_t from : keyOrder<3>(piece.keys, options.ratio, options.scales - 1 - scale)) {
+  for (const std::uint32_t from : keyOrder<D>(piece.keys, options.ratio, options.scales - 1 - scale)) {
     cells.addCell(piece.keys[from]);
     if (scale == 0) {
       cells.addMoments(piece.moments[from]);
@@ -79,22 +82,24 @@ void appendInOrder(MapScaleBuilder<3>& cells, std::vector<double>& areas, const 
 
 }  // namespace
 
-SpilledCells::SpilledCells(SpillFile& file, const MapOptions& options, int scale)
+template <int D>
+SpilledCells<D>::SpilledCells(SpillFile& file, const MapOptions& options, int scale)
     : file_(file), options_(options), scale_(scale) {}
 
-void SpilledCells::add(const MomentGrid<3>& moments) {
+template <int D>
+void SpilledCells<D>::add(const MomentGrid<D>& moments) {
   const std::int32_t span = tileSpan(options_);
-  std::map<CellKey<3>, std::vector<std::uint32_t>> by_tile;
+  std::map<CellKey<D>, std::vector<std::uint32_t>> by_tile;
   std::vector<std::uint32_t>* last = nullptr;
-  CellKey<3> last_tile{};
+  CellKey<D> last_tile{};
   for (std::size_t i = 0; i < moments.size(); ++i) {  // consecutive cells are often in the same tile
-    const CellKey<3> tile = tileOf<3>(moments[i].key, span);
+    const CellKey<D> tile = tileOf<D>(moments[i].key, span);
     if (last == nullptr || tile != last_tile) last = &by_tile[tile];
     last_tile = tile;
     last->push_back(static_cast<std::uint32_t>(i));
   }
   for (const auto& [tile, cells] : by_tile) {
-    Piece piece;
+    Piece<D> piece;
     for (const std::uint32_t i : cells) {
       piece.keys.push_back(moments[i].key);
       piece.moments.push_back(moments[i].moments);
@@ -103,11 +108,12 @@ void SpilledCells::add(const MomentGrid<3>& moments) {
   }
 }
 
-void SpilledCells::add(const MapScale<3>& cells, const std::vector<double>& areas) {
+template <int D>
+void SpilledCells<D>::add(const MapScale<D>& cells, const std::vector<double>& areas) {
   const std::int32_t span = tileSpan(options_);
-  std::map<CellKey<3>, Piece> by_tile;
+  std::map<CellKey<D>, Piece<D>> by_tile;
   for (std::size_t cell = 0; cell < cells.keys.size(); ++cell) {
-    Piece& piece = by_tile[tileOf<3>(cells.keys[cell], span)];
+    Piece<D>& piece = by_tile[tileOf<D>(cells.keys[cell], span)];
     const IndexRange range = gaussiansOf(cells, cell);
     piece.keys.push_back(cells.keys[cell]);
     piece.counts.push_back(static_cast<std::uint32_t>(range.size()));
@@ -119,8 +125,9 @@ void SpilledCells::add(const MapScale<3>& cells, const std::vector<double>& area
   for (const auto& [tile, piece] : by_tile) pieces_[tile].push_back(file_.append(piece.bytes()));
 }
 
-std::vector<std::vector<CellKey<3>>> SpilledCells::batches(std::size_t bytes) const {
-  std::vector<std::vector<CellKey<3>>> batches;
+template <int D>
+std::vector<std::vector<CellKey<D>>> SpilledCells<D>::batches(std::size_t bytes) const {
+  std::vector<std::vector<CellKey<D>>> batches;
   std::uint64_t held = 0;
   for (const auto& [tile, spans] : pieces_) {
     std::uint64_t size = 0;
@@ -135,14 +142,15 @@ std::vector<std::vector<CellKey<3>>> SpilledCells::batches(std::size_t bytes) co
   return batches;
 }
 
-CellBatch SpilledCells::load(const std::vector<CellKey<3>>& tiles, int threads) {
-  std::vector<Piece> pieces(tiles.size());
+template <int D>
+CellBatch<D> SpilledCells<D>::load(const std::vector<CellKey<D>>& tiles, int threads) {
+  std::vector<Piece<D>> pieces(tiles.size());
   parallelFor(tiles.size(), threads, 1, [&](std::size_t i) {
     for (const SpillFile::Span& span : pieces_.at(tiles[i])) pieces[i].append(file_.read(span));
     if (pieces_.at(tiles[i]).size() > 1 && scale_ == 0) pieces[i] = withEachCellOnce(pieces[i]);
   });
-  CellBatch batch;
-  MapScaleBuilder<3> cells;
+  CellBatch<D> batch;
+  MapScaleBuilder<D> cells;
   for (std::size_t i = 0; i < tiles.size(); ++i) {
     std::vector<SpillFile::Span>& spans = pieces_.at(tiles[i]);
     if (spans.size() > 1 && scale_ == 0) spans = {file_.append(pieces[i].bytes())};
@@ -154,5 +162,8 @@ CellBatch SpilledCells::load(const std::vector<CellKey<3>>& tiles, int threads) 
   batch.cells = cells.take();
   return batch;
 }
+
+template class SpilledCells<2>;
+template class SpilledCells<3>;
 
 }  // namespace gaussmap::detail

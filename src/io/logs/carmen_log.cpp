@@ -62,6 +62,12 @@ class Words {
     return value;
   }
   void skip(std::size_t words) { next_ += words; }
+  /// Skips all words but the last `words`. Returns false if fewer are left.
+  bool skipTo(std::size_t words) {
+    if (left() < words) return false;
+    next_ = words_.size() - words;
+    return true;
+  }
 
  private:
   std::vector<std::string_view> words_;
@@ -82,6 +88,13 @@ void readPose(Words& words, LaserScan& scan) {
   scan.pose.heading = std::remainder(words.finite("heading of the pose"), 2.0 * kPi);
 }
 
+/// Reads the words that end a line: time of the message, host, time of the log.
+void readTime(Words& words, LaserScan& scan) {
+  if (!words.skipTo(3)) return;
+  double time = 0.0;
+  if (parseNumber(words.word("time"), time) && std::isfinite(time)) scan.time = time;
+}
+
 void setBearings(LaserScan& scan, double first, double step) {
   scan.bearings.reserve(scan.ranges.size());
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) scan.bearings.push_back(first + static_cast<double>(i) * step);
@@ -99,6 +112,7 @@ LaserScan readFlaser(Words& words) {
   const double field = n == 400 || n == 401 ? 100.0 : 180.0;
   const bool is_last_beam_missing = n == 180 || n == 360 || n == 400;
   const double steps = is_last_beam_missing ? static_cast<double>(n) : std::max(static_cast<double>(n) - 1.0, 1.0);
+  readTime(words, scan);
   setBearings(scan, -field / 2.0 * kDegree, field / steps * kDegree);
   scan.max_range = kSickNoReturn;
   return scan;
@@ -124,6 +138,7 @@ LaserScan readRobotLaser(Words& words) {
   if (std::abs(start) > 4.0 * kPi)
     throw BadLine("the start angle is " + numberText(start) + " rad, expected at most two turns");
   if (!(max_range > 0.0)) throw BadLine("the maximum range must be above 0");
+  readTime(words, scan);
   setBearings(scan, start, step);
   scan.max_range = max_range > kSickNoReturn && max_range < kSickLimit ? kSickNoReturn : max_range;
   return scan;

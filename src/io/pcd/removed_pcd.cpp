@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/pcd/removed_pcd.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <string>
 
+#include "core/in_space.h"
 #include "gaussmap/io/pcd/pcd_reader.h"
 #include "gaussmap/io/pcd/pcd_writer.h"
 #include "io/pcd/pcd_points.h"
@@ -89,6 +91,45 @@ RemovedCluster<3> fromRecord(const Record& record) {
   return removed;
 }
 
+// The order of the products of CellMoments: xx xy yy in the plane, xx xy xz yy yz zz in space.
+constexpr std::size_t kPlanarProducts[3] = {0, 1, 3};
+constexpr std::int64_t kPlaneOffset = -kStepsPerCell / 2;  // the plane is the lower face of the cells at z = 0
+
+Record toRecord(const RemovedCluster<2>& removed) {
+  const double thickness = std::sqrt(std::max(0.0, principalAxes(removed.gaussian).variances[0]));
+  RemovedCluster<3> in_space{removed.scale,
+                             inSpace(removed.gaussian, thickness),
+                             {removed.key[0], removed.key[1], 0},
+                             {},
+                             removed.log_odds,
+                             removed.evidence,
+                             removed.scan};
+  const CellMoments<2>& flat = removed.moments;
+  CellMoments<3>& moments = in_space.moments;
+  moments.count = flat.count;
+  moments.sum = {flat.sum[0], flat.sum[1], kPlaneOffset * flat.count};
+  for (std::size_t i = 0; i < 3; ++i) moments.product[kPlanarProducts[i]] = flat.product[i];
+  moments.product[2] = kPlaneOffset * flat.sum[0];
+  moments.product[4] = kPlaneOffset * flat.sum[1];
+  moments.product[5] = kPlaneOffset * kPlaneOffset * flat.count;
+  return toRecord(in_space);
+}
+
+RemovedCluster<2> inPlane(const RemovedCluster<3>& removed) {
+  RemovedCluster<2> flat{
+      removed.scale,
+      {removed.gaussian.mean.head<2>(), removed.gaussian.cov.topLeftCorner<2, 2>(), removed.gaussian.weight},
+      {removed.key[0], removed.key[1]},
+      {},
+      removed.log_odds,
+      removed.evidence,
+      removed.scan};
+  flat.moments.count = removed.moments.count;
+  flat.moments.sum = {removed.moments.sum[0], removed.moments.sum[1]};
+  for (std::size_t i = 0; i < 3; ++i) flat.moments.product[i] = removed.moments.product[kPlanarProducts[i]];
+  return flat;
+}
+
 /// Returns true if points of a cell can have such moments. An offset has at most 15 bits and a sign, see CellMoments.
 bool isPossible(const CellMoments<3>& moments) {
   constexpr std::int64_t kMaxOffset = kStepsPerCell / 2;
@@ -109,25 +150,41 @@ bool isUsable(const RemovedCluster<3>& removed) {
 
 }  // namespace
 
-void writeRemoved(const std::filesystem::path& path, const std::vector<RemovedCluster<3>>& removed) {
+template <int D>
+void writeRemoved(const std::filesystem::path& path, const std::vector<RemovedCluster<D>>& removed) {
   std::vector<Record> records;
   records.reserve(removed.size());
-  for (const RemovedCluster<3>& one : removed) records.push_back(toRecord(one));
+  for (const RemovedCluster<D>& one : removed) records.push_back(toRecord(one));
   const Record none{};
   writePcd(path, records.size(), fieldsOf(records.empty() ? none : records.front()));
 }
 
-std::vector<RemovedCluster<3>> readRemoved(const std::filesystem::path& path) {
+template <int D>
+std::vector<RemovedCluster<D>> readRemoved(const std::filesystem::path& path) {
   const PcdReader reader(path);
   Record record{};
-  std::vector<RemovedCluster<3>> removed;
+  std::vector<RemovedCluster<D>> removed;
   removed.reserve(reader.size());
   readPoints(reader, fieldsOf(record), "cloud of deleted clusters", [&](std::size_t i) {
-    removed.push_back(fromRecord(record));
-    if (!isUsable(removed.back()))
-      throw FileError(path, "point " + std::to_string(i) + " is not a cluster: a value is impossible or not finite");
+    const RemovedCluster<3> cluster = fromRecord(record);
+    const std::string name = "point " + std::to_string(i);
+    if (!isUsable(cluster)) throw FileError(path, name + " is not a cluster: a value is impossible or not finite");
+    if constexpr (D == 2) {
+      if (cluster.gaussian.mean.z() != 0.0 || cluster.key[2] != 0)
+        throw FileError(path, name + " does not lie in the plane z = 0: it was not deleted from a planar map");
+      removed.push_back(inPlane(cluster));
+    } else {
+      removed.push_back(cluster);
+    }
   });
   return removed;
 }
+
+#define GAUSSMAP_INSTANTIATE(D)                                                                       \
+  template void writeRemoved<D>(const std::filesystem::path&, const std::vector<RemovedCluster<D>>&); \
+  template std::vector<RemovedCluster<D>> readRemoved<D>(const std::filesystem::path&);
+GAUSSMAP_INSTANTIATE(2)
+GAUSSMAP_INSTANTIATE(3)
+#undef GAUSSMAP_INSTANTIATE
 
 }  // namespace gaussmap::detail

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "gaussmap/io/logs/carmen_log.h"
 #include "io/bags/recording.h"
 #include "io/e57/e57_file.h"
 #include "io/files/gunzip.h"
@@ -16,6 +17,7 @@
 #include "io/formats/message_file.h"
 #include "io/las/las_file.h"
 #include "io/laz/laz_file.h"
+#include "io/logs/carmen_scans.h"
 #include "io/messages/bag_scans.h"
 #include "io/pcd/pcd_header.h"
 #include "io/pcd/pcd_scan_file.h"
@@ -84,14 +86,25 @@ std::shared_ptr<const ScanFile> openWithFields(const std::filesystem::path& path
   return openFloatRecords(path, {fields});
 }
 
-/// Only PCD files are read while they are compressed with gzip.
-std::shared_ptr<const ScanFile> openGzip(const std::filesystem::path& path) {
+/// Returns true if the expanded text of a gzip file starts like a log of CARMEN.
+bool isCarmenGzip(const std::filesystem::path& path, std::string_view bytes) {
+  try {
+    return isCarmenText(gunzipStart(path, bytes, kStart));
+  } catch (const FileError&) {
+    return false;  // damaged: the reader of another kind reports it
+  }
+}
+
+/// Only PCD files and logs of CARMEN are read while they are compressed with gzip.
+std::shared_ptr<const ScanFile> openGzip(const std::filesystem::path& path, std::string_view bytes) {
+  if (isCarmenLogName(path) || isCarmenGzip(path, bytes)) return openCarmenScans(path);
   const std::string name = path.filename().string();
   if (name.find(".tar.") != std::string::npos || path.extension() == ".tgz")
     throw FileError(path, "is an archive (tar, gzip); expand it with tar xzf");
   const std::string extension = scanExtension(path.stem());
   if ((extension.empty() && !isTextName(path.stem())) || extension == ".pcd") return openPcd(path);
-  throw FileError(path, "is compressed with gzip; expand it with gunzip (only PCD files can stay compressed)");
+  throw FileError(
+      path, "is compressed with gzip; expand it with gunzip (only PCD files and CARMEN logs can stay compressed)");
 }
 
 /// Returns true for a map file: an SQLite database with the application id of gaussmap.
@@ -111,6 +124,7 @@ std::shared_ptr<const ScanFile> openByName(const std::filesystem::path& path, st
     throw FileError(path, "is " + kind + ", not a file of scans");
   if (isRosbag2Metadata(start))
     throw FileError(path, "describes a recording of rosbag2; give the folder with the recording instead");
+  if (isCarmenLogName(path) && looksLikeText(start)) return openCarmenScans(path);
   const bool is_utf16 = start[0] == '\xFF' || start[0] == '\xFE';
   if (looksLikeText(start) || is_utf16 || isTextName(path) || extension == ".xyz" || extension == ".pts" ||
       extension == ".ptx")
@@ -139,7 +153,8 @@ std::shared_ptr<const ScanFile> openScanFile(const std::filesystem::path& path, 
   if (isLas(start)) return openLas(path);
   if (isPly(start)) return openPlyCloud(path);
   if (isMessageFile(path)) return openRecording(path, options);
-  if (isGzip(start)) return openGzip(path);
+  if (isGzip(start)) return openGzip(path, file.bytes());
+  if (isCarmenText(start)) return openCarmenScans(path);
   if (isCloudText(start)) return openCloudText(path);
   return openByName(path, start);
 }

@@ -34,6 +34,19 @@ TEST_F(MapFile, OfAnotherDimensionIsRefused) {
   EXPECT_NO_THROW(loadMetadata(path));
 }
 
+TEST_F(MapFile, TellsItsDimensions) {
+  const fs::path path = directory_.path() / "map.gmap";
+  save<2>(path, build<2>(randomCloud<2>(100, 1), {}));
+  EXPECT_EQ(mapDimensions(path), 2);
+  save(path, smallMap(), {}, {true, 3, 0});
+  EXPECT_EQ(mapDimensions(path), 3);
+  shell(path, "UPDATE metadata SET value = '4' WHERE name = 'dimension'");
+  const std::string message = complaintOf([&] { mapDimensions(path); });
+  EXPECT_NE(message.find("map.gmap: holds a map of dimension 4, expected 2 or 3"), std::string::npos) << message;
+  EXPECT_THROW(mapDimensions(directory_.path() / "missing.gmap"), FileError);
+  EXPECT_THROW(mapDimensions(directory_.write("text.gmap", "not a map")), FileError);
+}
+
 TEST_F(MapFile, MustBeThereAndAFile) {
   expectRefused(directory_.path() / "missing.gmap", "does not exist");
   expectRefused(directory_.path(), "is not a file");

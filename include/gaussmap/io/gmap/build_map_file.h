@@ -36,7 +36,7 @@ struct BuiltMapFile {
 /// Builds a map file from scans in limited memory, for maps that do not fit into memory.
 ///
 /// The file is bit-identical to the result of accumulateScans(), build(), refine() and save() with the same options and
-/// metadata.
+/// metadata. For D = 2, it holds a planar map.
 ///
 /// While scans are read, each thread writes its sums of points to a temporary file whenever they fill its share of the
 /// memory, and at the end. The file has no name and lies in the folder of the map; its data are grouped by tile. The
@@ -49,6 +49,7 @@ struct BuiltMapFile {
 /// `metadataOf(counts)` returns the metadata of the map. Throws like accumulateScans(), save() and refine(). Also
 /// throws std::invalid_argument if `max_memory` is too small, if the resolutions of `reading` and `map` differ, or if
 /// an option needs the whole map at once: RefineMethod::Insert, curves, MaxBytes, MaxError or Precision::Finished.
+template <int D = 3>
 GAUSSMAP_API BuiltMapFile buildMapFile(const Scans& scans, const AccumulateOptions& reading, const MapOptions& map,
                                        const std::filesystem::path& path,
                                        const std::function<MapMetadata(const PointCounts&)>& metadataOf,

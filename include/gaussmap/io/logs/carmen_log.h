@@ -38,6 +38,9 @@ struct CarmenLog {
 /// 1 for other numbers. Without a return, a SICK writes a range of about 81.8 m. LaserScan::max_range is therefore 80 m
 /// for such lasers.
 ///
+/// The time of a sweep is that of the message: the third last word of the line. CARMEN often writes it with six digits
+/// only, so that many sweeps have the same time. Lines without a time are accepted.
+///
 /// Damaged lines are skipped and listed in CarmenLog::faults. If a gzip file is truncated or damaged, all whole lines
 /// before the damage are kept. Throws FileError if the file cannot be read or holds no usable scan.
 GAUSSMAP_API CarmenLog readCarmenLog(const std::filesystem::path& path);

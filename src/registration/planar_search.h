@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "gaussmap/map/gaussian_map.h"
+#include "gaussmap/registration/registration.h"
+#include "registration/planar_equations.h"
+
+namespace gaussmap::detail {
+
+/// The Gaussians that represent a planar scan, about the sensor.
+struct PlanarScan {
+  std::vector<Gaussian<2>> fine, coarse;  ///< `coarse` is for coarse scales of the map
+  double side = 0.0;                      ///< side of the cells of `fine` [m]
+  double range = 0.0;                     ///< RMS range [m]
+
+  /// Takes the Gaussians of the scales of `source` with cells of about this side, at most `most`.
+  PlanarScan(const GaussianMap<2>& source, double side, std::size_t most);
+};
+
+/// The result of a search from the coarsest scale of the map to the finest.
+struct PlanarFit {
+  PlanarPose pose;                                     ///< relative to the origin of the search
+  PlanarEquations equations;                           ///< at `pose`
+  Eigen::Matrix3d surfaces = Eigen::Matrix3d::Zero();  ///< information from walls, at `pose`
+  int iterations = 0;
+  bool converged = false;
+};
+
+/// Searches the pose of a scan from a start, without moving it along the held directions. All sums are relative to
+/// `origin` [m], to keep their precision far from zero.
+PlanarFit searchInPlane(const PlanarScan& scan, const GaussianMap<2>& map, const PlanarPose& start,
+                        const Vector<2>& origin, const PlanarHold& held, const RegistrationOptions& options);
+
+}  // namespace gaussmap::detail

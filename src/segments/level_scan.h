@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "gaussmap/core/scans.h"
+#include "gaussmap/segments/laser_scan.h"
+#include "gaussmap/version.h"
+
+namespace gaussmap::detail {
+
+/// Maximum difference of the heights of the points of a planar laser [m], because its poses may tilt a little.
+inline constexpr double kMaxPlanarHeight = 0.5;
+
+/// Returns why a scan with points from `lowest` to `highest` [m, map frame] is not that of a planar laser.
+std::string notPlanarText(double lowest, double highest);
+
+/// Returns a scan as a planar map sees it: the pose keeps its position in the plane and its heading, and the points
+/// keep their x and y in the map frame, with z = 0. They stay in their order. NaN points stay NaN.
+///
+/// Uses only the heights of `options`: with `slice`, points outside it become NaN. Throws std::invalid_argument if
+/// there is no `slice` and the heights of the points differ by more than kMaxPlanarHeight.
+GAUSSMAP_API Scan levelled(const Scan& scan, const PlanarScanOptions& options = {});
+
+/// Returns the beams of planarScan() as a scan with z = 0. A beam without a return is NaN.
+GAUSSMAP_API Scan scanOfBeams(const LaserScan& beams);
+
+/// Passes scans on unchanged, and checks that each is that of a planar laser. ScanReader::requireWhole() throws
+/// FileError if the heights of the points that were read differ by more than kMaxPlanarHeight.
+class GAUSSMAP_API PlanarLaserScans : public Scans {
+ public:
+  /// `scans` must live as long as this object.
+  explicit PlanarLaserScans(const Scans& scans) : scans_(scans) {}
+
+  std::size_t size() const override { return scans_.size(); }
+  ScanInfo info(std::size_t index) const override { return scans_.info(index); }
+  ScanFrame frame() const override { return scans_.frame(); }
+  std::unique_ptr<ScanReader> open(std::size_t index) const override;
+
+ private:
+  const Scans& scans_;
+};
+
+}  // namespace gaussmap::detail
