@@ -20,7 +20,13 @@ class MeanSearch {
   /// `scale`: the scale whose means are searched, or kLeaves. The point must be in the grid's range.
   static constexpr int kLeaves = -1;
   MeanSearch(const GaussianMap<D>& map, const Vector<D>& point, int scale) : map_(map), point_(point), scale_(scale) {
-    for (int s = 0; s < map.scales(); ++s) at_[static_cast<std::size_t>(s)] = point / map.grid().side(s);
+    for (int s = 0; s < map.scales(); ++s) {
+      Level& level = levels_[static_cast<std::size_t>(s)];
+      level.keys = map.scale(s).keys.data();
+      level.square_side = map.grid().side(s) * map.grid().side(s);
+      level.below = (point / map.grid().side(s)).array() + kSlack;
+      level.above = (point / map.grid().side(s)).array() - (1.0 + kSlack);
+    }
   }
 
   /// Adds the means within `found.limit()` [m] to `found` (see nearest_list.h), near ones first. The limit can shrink
@@ -45,34 +51,35 @@ class MeanSearch {
     std::size_t cell;
   };
 
+  struct Level {
+    const CellKey<D>* keys;
+    double square_side;      // [m^2]
+    Vector<D> below, above;  // the point [cells]: a cell k is apart by k - below or above - k
+  };
+
   /// Returns the square of the distance of the point from an interval of cells on one axis [cells^2].
-  double squaredGap(int scale, int axis, std::int32_t first, std::int32_t last) const {
-    const double at = at_[static_cast<std::size_t>(scale)](axis);
-    const double gap = std::max(double(first) - kSlack - at, at - double(last) - 1.0 - kSlack);
-    return gap > 0.0 ? gap * gap : 0.0;
+  static double squaredGap(const Level& level, std::size_t axis, std::int32_t first, std::int32_t last) {
+    const auto i = static_cast<Eigen::Index>(axis);
+    const double gap = std::max(0.0, std::max(double(first) - level.below(i), level.above(i) - double(last)));
+    return gap * gap;
   }
 
   /// Returns the square of the distance of the point from a cell [m^2].
-  double squaredGap(int scale, const CellKey<D>& key) const {
+  static double squaredGap(const Level& level, const CellKey<D>& key) {
     double square = 0.0;
-    for (int axis = 0; axis < D; ++axis) {
-      const std::int32_t k = key[static_cast<std::size_t>(axis)];
-      square += squaredGap(scale, axis, k, k);
-    }
-    return square * map_.grid().side(scale) * map_.grid().side(scale);
+    for (std::size_t axis = 0; axis < D; ++axis) square += squaredGap(level, axis, key[axis], key[axis]);
+    return square * level.square_side;
   }
 
   /// Returns a lower bound of the same for all cells of a range that have one parent.
-  double squaredGap(int scale, std::size_t first, std::size_t last) const {
-    const std::vector<CellKey<D>>& keys = map_.scale(scale).keys;
-    const CellKey<D>&a = keys[first], &b = keys[last - 1];
+  static double squaredGap(const Level& level, std::size_t first, std::size_t last) {
+    const CellKey<D>&a = level.keys[first], &b = level.keys[last - 1];
     double square = 0.0;
-    for (int axis = 0; axis < D; ++axis) {
-      const auto i = static_cast<std::size_t>(axis);
-      square += squaredGap(scale, axis, a[i], b[i]);
-      if (a[i] != b[i]) break;  // the next axes are not sorted
+    for (std::size_t axis = 0; axis < D; ++axis) {
+      square += squaredGap(level, axis, a[axis], b[axis]);
+      if (a[axis] != b[axis]) break;  // the next axes are not sorted
     }
-    return square * map_.grid().side(scale) * map_.grid().side(scale);
+    return square * level.square_side;
   }
 
   template <typename Found>
@@ -83,9 +90,10 @@ class MeanSearch {
   /// Visits the cells of a range that have one parent, or all coarsest cells.
   template <typename Found>
   void visit(int scale, std::size_t first, std::size_t last, Found& found) const {
+    const Level& level = levels_[static_cast<std::size_t>(scale)];
     if (last - first > kFew) {
       const std::size_t middle = first + (last - first) / 2;
-      const double left = squaredGap(scale, first, middle), right = squaredGap(scale, middle, last);
+      const double left = squaredGap(level, first, middle), right = squaredGap(level, middle, last);
       const bool right_first = right < left;
       if (right_first && isNear(right, found)) visit(scale, middle, last, found);
       if (isNear(left, found)) visit(scale, first, middle, found);
@@ -95,7 +103,7 @@ class MeanSearch {
     Near near[kFew];
     std::size_t count = 0;
     for (std::size_t cell = first; cell < last; ++cell) {
-      const double square = squaredGap(scale, map_.scale(scale).keys[cell]);
+      const double square = squaredGap(level, level.keys[cell]);
       if (!isNear(square, found)) continue;
       std::size_t place = count++;
       for (; place > 0 && square < near[place - 1].square; --place) near[place] = near[place - 1];
@@ -122,7 +130,7 @@ class MeanSearch {
   const GaussianMap<D>& map_;
   const Vector<D>& point_;
   int scale_;
-  std::array<Vector<D>, kMaxScales> at_;  // the point [cells of the scale]
+  std::array<Level, kMaxScales> levels_;
 };
 
 }  // namespace gaussmap::detail
