@@ -11,7 +11,7 @@ packages=(
   liblz4-dev libbz2-dev libpugixml-dev                     # files: recordings of ROS, E57
   libpcl-dev                                               # PCL plug-ins
   libvtk9-dev libegl-dev libegl-mesa0 libx11-dev           # viewer; Mesa draws pictures without a display
-  libcli11-dev nlohmann-json3-dev                          # command line
+  libcli11-dev nlohmann-json3-dev libflann-dev             # command line
   libgtest-dev liboctomap-dev pcl-tools                    # tests; programs that the benchmarks compare with
 )
 case "${1:-}" in

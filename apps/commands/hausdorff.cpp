@@ -33,6 +33,9 @@ Larger is better. Compare only scores of the same points. Make sure that the map
 
 --write-errors: fields x y z error rgb, from blue = 0 over cyan, green and yellow to red = 99 % quantile and above.
 
+--check: computes the distances a second time with the exact kd-tree of FLANN, and fails if one differs by more than
+rounding. For points and maps as the reference. The rows "2 sigma" are not checked.
+
 More examples: gaussmap hausdorff street.gmap street.ply --scale 2 --write-errors errors.pcd
                gaussmap hausdorff street.gmap scans_never_used/ --held-out)"};
 
@@ -66,6 +69,10 @@ void check(const HausdorffCommand& command, bool of_map, ReferenceKind reference
     throw UsageError("--max-only: only for a cloud and clouds as the reference");
   if (command.max_only && writes) throw UsageError("--write-errors: needs all distances; leave out --max-only");
   if (!of_map && !command.slice.empty()) throw UsageError("--slice: only for planar maps; --crop can have heights");
+  if (command.check && command.held_out)
+    throw UsageError("--check: checks distances, which --held-out does not measure");
+  if (command.check && reference == ReferenceKind::Mesh)
+    throw UsageError("--check: FLANN has no distances to the surface of a mesh; compare with its points");
   if (!of_map && reference == ReferenceKind::Map)
     throw UsageError(command.onlyReference() + ": to compare a cloud with a map, name the map first");
   if (!writes) return;
@@ -118,6 +125,7 @@ void addHausdorff(CLI::App& app) {
   command.flag("--leaves", options->leaves, "compare all leaves of a compressed map at once").excludes(scale);
   addSampleOptions(command, options->samples);
   command.flag("--max-only", options->max_only, "compute only the maxima; for two clouds; faster");
+  command.flag("--check", options->check, "check all distances with the kd-tree of FLANN").rare();
   command.flag("--held-out", options->held_out,
                "compute the mean log-likelihood of the reference points under the map");
   command

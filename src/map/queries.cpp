@@ -3,10 +3,8 @@
 
 #include <cmath>
 #include <limits>
-#include <queue>
 #include <stdexcept>
 #include <string>
-#include <tuple>
 
 #include "map/neighbour_keys.h"
 
@@ -41,24 +39,6 @@ void forEachNeighbour(const GaussianMap<D>& map, const CellKey<D>& centre, int s
   forKeysAround(centre, [&](const CellKey<D>& key) {
     if (const auto cell = map.find(key, scale)) visit(*cell);
   });
-}
-
-/// Returns the distance from a point to the box of a cell [m]; 0 inside.
-template <int D>
-double distanceToCell(const GaussianMap<D>& map, const Vector<D>& point, std::size_t cell, int scale) {
-  const Vector<D> offset = point - map.grid().centre(map.scale(scale).keys[cell], scale);
-  return (offset.cwiseAbs().array() - 0.5 * map.grid().side(scale)).max(0.0).matrix().norm();
-}
-
-/// Updates `best` if the mean of a Gaussian of the cell is nearer to the point. Ties go to the smaller index.
-template <int D>
-void improve(const GaussianMap<D>& map, const Vector<D>& point, std::size_t cell, int scale, NearestGaussian<D>& best) {
-  const Vector<D> local = point - map.grid().centre(map.scale(scale).keys[cell], scale);
-  const IndexRange range = map.gaussiansOf(cell, scale);
-  for (std::size_t i = range.first; i < range.last; ++i) {
-    const double distance = (map.localGaussian(i, scale).mean - local).norm();
-    if (std::tie(distance, i) < std::tie(best.distance, best.index)) best = {i, distance};
-  }
 }
 
 /// Appends ln(weight * density at the point) for each Gaussian of a cell.
@@ -144,41 +124,6 @@ double logLikelihood(const GaussianMap<D>& map, const Vector<D>& point) {
 }
 
 template <int D>
-std::optional<NearestGaussian<D>> nearest(const GaussianMap<D>& map, const Vector<D>& point, int scale) {
-  if (map.cellCount(scale) == 0) return std::nullopt;
-  NearestGaussian<D> best{std::numeric_limits<std::size_t>::max(), std::numeric_limits<double>::infinity()};
-  forEachNeighbour<D>(map, map.grid().keyOf(point, scale), scale,
-                      [&](std::size_t cell) { improve<D>(map, point, cell, scale, best); });
-  // No mean outside the neighbouring cells is nearer than the side of a cell.
-  if (best.distance < map.grid().side(scale)) return best;
-
-  // Best-first search from the coarsest scale down. A mean lies in its cell, apart from the rounding that a map allows.
-  struct Candidate {
-    double bound;
-    int scale;
-    std::size_t cell;
-    bool operator<(const Candidate& other) const { return bound > other.bound; }
-  };
-  std::priority_queue<Candidate> open;
-  const int coarsest = map.scales() - 1;
-  for (std::size_t cell = 0; cell < map.cellCount(coarsest); ++cell)
-    open.push({distanceToCell<D>(map, point, cell, coarsest), coarsest, cell});
-  const double slack = 2e-3 * map.grid().side(scale);
-  for (; !open.empty() && open.top().bound <= best.distance + slack;) {
-    const Candidate next = open.top();
-    open.pop();
-    if (next.scale == scale) {
-      improve<D>(map, point, next.cell, scale, best);
-      continue;
-    }
-    const IndexRange children = map.childCells(next.cell, next.scale);
-    for (std::size_t child = children.first; child < children.last; ++child)
-      open.push({distanceToCell<D>(map, point, child, next.scale - 1), next.scale - 1, child});
-  }
-  return best;
-}
-
-template <int D>
 std::optional<Vector<D>> normalAt(const GaussianMap<D>& map, const Vector<D>& point) {
   for (int scale = 0; scale < map.scales(); ++scale) {
     const auto cell = map.find(map.grid().keyOf(point, scale), scale);
@@ -224,15 +169,14 @@ std::optional<float> logOddsAt(const GaussianMap<D>& map, const Vector<D>& point
   return std::nullopt;
 }
 
-#define GAUSSMAP_INSTANTIATE(D)                                                                          \
-  template std::vector<GaussianId> gaussiansOfScale<D>(const GaussianMap<D>&, int);                      \
-  template std::vector<GaussianId> leaves<D>(const GaussianMap<D>&);                                     \
-  template LeafCounts leafCounts<D>(const GaussianMap<D>&, int);                                         \
-  template std::optional<Box<(D)>> extentOf<D>(const GaussianMap<D>&);                                   \
-  template double logLikelihood<D>(const GaussianMap<D>&, const Vector<D>&, int);                        \
-  template double logLikelihood<D>(const GaussianMap<D>&, const Vector<D>&);                             \
-  template std::optional<NearestGaussian<(D)>> nearest<D>(const GaussianMap<D>&, const Vector<D>&, int); \
-  template std::optional<Vector<(D)>> normalAt<D>(const GaussianMap<D>&, const Vector<D>&);              \
+#define GAUSSMAP_INSTANTIATE(D)                                                             \
+  template std::vector<GaussianId> gaussiansOfScale<D>(const GaussianMap<D>&, int);         \
+  template std::vector<GaussianId> leaves<D>(const GaussianMap<D>&);                        \
+  template LeafCounts leafCounts<D>(const GaussianMap<D>&, int);                            \
+  template std::optional<Box<(D)>> extentOf<D>(const GaussianMap<D>&);                      \
+  template double logLikelihood<D>(const GaussianMap<D>&, const Vector<D>&, int);           \
+  template double logLikelihood<D>(const GaussianMap<D>&, const Vector<D>&);                \
+  template std::optional<Vector<(D)>> normalAt<D>(const GaussianMap<D>&, const Vector<D>&); \
   template std::optional<float> logOddsAt<D>(const GaussianMap<D>&, const Vector<D>&);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)

@@ -245,6 +245,29 @@ TEST_F(HausdorffApp, ScoresAMapWithHeldOutPoints) {
 
 // ---- --write-errors -------------------------------------------------------------------------------------------------
 
+TEST_F(HausdorffApp, ChecksItsDistancesWithFlann) {
+  const auto checked = [](std::vector<std::string> arguments) {
+    const Json plain = json(arguments);
+    arguments.emplace_back("--check");
+    Json with_check = json(arguments);
+    const auto count = with_check.at("checked").get<std::size_t>();
+    with_check.erase("checked");
+    EXPECT_EQ(with_check, plain);  // the report has the same figures
+    return count;
+  };
+  EXPECT_EQ(checked({in("a.pcd"), in("b.pcd")}), 5000u);
+  EXPECT_EQ(checked({in("a.pcd"), in("b.pcd"), "--max-only"}), 5000u);
+  EXPECT_GT(checked({in("a.gmap"), in("b.pcd"), "--samples", "2000"}), 2u * 2000u);  // two scales
+  EXPECT_GT(checked({in("a.gmap"), in("b.gmap"), "--samples", "2000", "--leaves"}), 2000u);
+  const std::string text = succeed({in("a.pcd"), in("b.pcd"), "--check"});
+  EXPECT_NE(text.find("check: FLANN finds the same 5000 distances\n"), std::string::npos) << text;
+  expectFailure(2, "--check: FLANN has no distances to the surface", {in("a.gmap"), in("floor.ply"), "--check"});
+  expectFailure(2, "--check", {in("a.gmap"), in("b.pcd"), "--held-out", "--check"});
+  const std::string errors = own("checked.pcd");
+  succeed({in("a.pcd"), in("b.pcd"), "--check", "--write-errors", errors});
+  EXPECT_TRUE(fs::exists(errors));
+}
+
 TEST_F(HausdorffApp, WritesTheErrorsOfTheSubject) {
   const Json result = json({in("a.pcd"), in("b.pcd"), "--write-errors", own("errors.pcd")});
   EXPECT_EQ(result["errors"]["points"], a_.size());

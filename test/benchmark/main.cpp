@@ -17,6 +17,7 @@ int main(int argc, char** argv) try {
   addRegistration(app);
   addNormals(app);
   addFilters(app);
+  addSearch(app);
 #endif
   addRefinementTable(app);
   addRefinementSpeed(app);

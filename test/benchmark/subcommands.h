@@ -19,6 +19,7 @@ void addFormats(CLI::App& app);       // with PCL
 void addRegistration(CLI::App& app);  // with PCL
 void addNormals(CLI::App& app);       // with PCL
 void addFilters(CLI::App& app);       // with PCL
+void addSearch(CLI::App& app);        // with PCL
 void addFrameTimes(CLI::App& app);    // with the viewer
 void addReference(CLI::App& app);
 void addWideScans(CLI::App& app);

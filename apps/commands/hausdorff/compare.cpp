@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <iostream>
 
+#include "commands/hausdorff/check_distances.h"
 #include "commands/hausdorff/hausdorff.h"
 #include "commands/recordings.h"
 #include "evaluation/error_cloud.h"
@@ -58,6 +59,14 @@ Json writeErrors(const HausdorffCommand& command, const std::vector<Vector<3>>& 
   return {{"file", command.errors.path}, {"direction", command.direction}, {"points", points.size()}};
 }
 
+/// Adds the result of --check to the report, or prints it.
+void reportCheck(const HausdorffCommand& command, std::size_t checked, Json& json) {
+  if (command.json)
+    json["checked"] = checked;
+  else
+    std::printf("check: FLANN finds the same %zu distances\n", checked);
+}
+
 Reference readMesh(const HausdorffCommand& command) {
   return Reference(readPly(command.onlyReference()), command.samples.samples, command.samples.seed);
 }
@@ -85,6 +94,7 @@ void compareMap(const HausdorffCommand& command, ReferenceKind kind) {
     throw UsageError("--write-errors: writes one cloud; choose a --scale or --leaves");
 
   Json all = Json::array(), written;
+  std::size_t checked = 0;
   if (!command.json) printHead();
   for (const Level& level : levels) {
     const SampleOptions& samples = command.samples;
@@ -92,6 +102,7 @@ void compareMap(const HausdorffCommand& command, ReferenceKind kind) {
     PointDistances distances;
     const MapHausdorff result = level ? reference->compare(map, *level, samples, &distances)
                                       : reference->compareLeaves(map, samples, &distances);
+    if (command.check) checked += checkDistances(reference->points(), distances, samples.threads);
     all.push_back({{"scale", jsonOf(level)},
                    {"gaussians", result.gaussians},
                    {"samples", result.samples},
@@ -104,8 +115,9 @@ void compareMap(const HausdorffCommand& command, ReferenceKind kind) {
     }
     if (!command.errors.path.empty()) written = writeErrors(command, reference->points(), distances);
   }
-  if (!command.json) return;
   Json json = {{"map", command.subject}, {"scales", all}};
+  if (command.check) reportCheck(command, checked, json);
+  if (!command.json) return;
   if (!written.is_null()) json["errors"] = written;
   printJson(json);
 }
@@ -114,7 +126,7 @@ template void compareMap<3>(const HausdorffCommand&, ReferenceKind);
 
 void compareCloud(const HausdorffCommand& command, ReferenceKind kind) {
   const int threads = command.samples.threads;
-  PointDistances distances, *const wanted = command.errors.path.empty() ? nullptr : &distances;
+  PointDistances distances, *const wanted = command.errors.path.empty() && !command.check ? nullptr : &distances;
   HausdorffResult result;
   std::vector<Vector<3>> points;
   if (kind == ReferenceKind::Cloud) {
@@ -130,21 +142,25 @@ void compareCloud(const HausdorffCommand& command, ReferenceKind kind) {
     printRows("-", "points", "cloud", "ref", result);
   }
   Json json = {{"cloud", command.subject}, {"all", jsonOf(result)}};
-  if (wanted != nullptr) json["errors"] = writeErrors(command, points, distances);
+  if (command.check) reportCheck(command, checkDistances(points, distances, threads), json);
+  if (!command.errors.path.empty()) json["errors"] = writeErrors(command, points, distances);
   if (command.json) printJson(json);
 }
 
 void compareMaxima(const HausdorffCommand& command) {
   const std::vector<Vector<3>> reference = readPoints(command.reference, command.samples.threads);
-  const HausdorffMaxima maxima = hausdorffMaxima(readSubject(command), reference, command.samples.threads);
-  if (command.json)
-    return printJson({{"cloud", command.subject},
-                      {"all",
-                       {{"forward", {{"max", maxima.forward}}},
-                        {"backward", {{"max", maxima.backward}}},
-                        {"hausdorff", maxima.hausdorff()}}}});
-  std::printf("%-10s %10s\n%-10s %10.4g\n%-10s %10.4g\n", "direction", "max", "cloud->ref", maxima.forward,
-              "ref->cloud", maxima.backward);
+  const std::vector<Vector<3>> subject = readSubject(command);
+  const HausdorffMaxima maxima = hausdorffMaxima(subject, reference, command.samples.threads);
+  Json json = {{"cloud", command.subject},
+               {"all",
+                {{"forward", {{"max", maxima.forward}}},
+                 {"backward", {{"max", maxima.backward}}},
+                 {"hausdorff", maxima.hausdorff()}}}};
+  if (!command.json)
+    std::printf("%-10s %10s\n%-10s %10.4g\n%-10s %10.4g\n", "direction", "max", "cloud->ref", maxima.forward,
+                "ref->cloud", maxima.backward);
+  if (command.check) reportCheck(command, checkMaxima(subject, reference, maxima, command.samples.threads), json);
+  if (command.json) printJson(json);
 }
 
 }  // namespace gaussmap::app

@@ -25,6 +25,7 @@ struct HausdorffCommand {
   SampleOptions samples;
   bool max_only = false;
   bool held_out = false;
+  bool check = false;
   HeldOutOptions scoring;
   Output errors;
   std::string direction = "forward";

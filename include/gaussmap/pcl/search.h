@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <pcl/console/print.h>
+#include <pcl/point_types.h>
+#include <pcl/search/search.h>
+#include <pcl/impl/pcl_base.hpp>       // required for user-defined point types
+#include <pcl/search/impl/search.hpp>  // required for user-defined point types
+
+#include <exception>
+#include <memory>
+#include <optional>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "gaussmap/core/scans.h"
+#include "gaussmap/map/queries.h"
+#include "gaussmap/pcl/point_gaussian.h"
+#include "gaussmap/version.h"
+
+namespace gaussmap {
+namespace detail {
+
+/// The search tree of GaussianMapSearch.
+class GAUSSMAP_API CloudSearch {
+ public:
+  CloudSearch() = default;
+  /// Sorts the finite points; `indices`: those to use, null: all.
+  CloudSearch(const PointsView& points, const pcl::Indices* indices);
+  /// `point`: x, y, z. The functions return the number of points found. They find nothing if the query is not finite.
+  int nearest(const float* point, int k, pcl::Indices& indices, std::vector<float>& squares) const;
+  int within(const float* point, double radius, unsigned max_count, bool sorted, pcl::Indices& indices,
+             std::vector<float>& squares) const;
+
+ private:
+  struct Tree;
+  std::shared_ptr<const Tree> tree_;
+};
+
+/// The means of the leaves of a map, or of one scale, relative to `origin` [m]; and their Gaussians.
+struct GAUSSMAP_API MapMeans {
+  MapMeans(const GaussianMapOctree& map, std::optional<int> scale);
+  std::vector<GaussianId> ids;
+  std::vector<Eigen::Vector3f> means;
+  pcl::PointCloud<PointGaussian> gaussians(const GaussianMapOctree& map) const;
+  Eigen::Vector3d origin;
+};
+
+}  // namespace detail
+
+/// Searches for neighbours in a cloud, or among the Gaussians of a map. It can be used wherever PCL takes a
+/// pcl::search::Search, for example with pcl::NormalEstimation or pcl::EuclideanClusterExtraction.
+///
+/// The points are sorted into cells that are divided again and again, as in a map of ratio 2. Sorting takes a fraction
+/// of the time of building a pcl::search::KdTree; the queries take about as long. PointT can be any point type with x,
+/// y, z. `gaussmap_benchmark search` compares both.
+///
+/// Results are those of a comparison with all points: distances are computed in floats, and ties go to the smaller
+/// index. The neighbours of nearestKSearch() are sorted, and those of radiusSearch() are too unless
+/// setSortedResults(false) was called. A radius includes its border (as in pcl::search::BruteForce and Octree; a
+/// pcl::search::KdTree excludes it); a radius of 0 finds nothing. With `max_nn`, radiusSearch() returns the nearest
+/// ones, as KdTree does. Points that are not finite are never found. A query that is not finite finds nothing and
+/// returns 0, also in debug builds, where PCL's own classes stop the program.
+///
+/// Several threads can search at the same time.
+template <typename PointT>
+class GAUSSMAP_API GaussianMapSearch : public pcl::search::Search<PointT> {
+  using Base = pcl::search::Search<PointT>;
+
+ public:
+  using Ptr = pcl::shared_ptr<GaussianMapSearch>;                ///< shared pointer
+  using ConstPtr = pcl::shared_ptr<const GaussianMapSearch>;     ///< shared pointer to const
+  using PointCloud = typename Base::PointCloud;                  ///< the searched points
+  using PointCloudConstPtr = typename Base::PointCloudConstPtr;  ///< shared pointer to the searched points
+  using IndicesConstPtr = typename Base::IndicesConstPtr;        ///< shared pointer to indices
+  /// The result of setInputCloud(): void, or bool in newer versions of PCL.
+  using Accepted = decltype(std::declval<Base&>().setInputCloud(std::declval<const PointCloudConstPtr&>(),
+                                                                std::declval<const IndicesConstPtr&>()));
+
+  using Base::nearestKSearch;
+  using Base::radiusSearch;
+
+  /// Makes a search without points.
+  explicit GaussianMapSearch(bool sorted = true) : Base("GaussianMapSearch", sorted) {}
+
+  /// Sets the cloud to search. With `indices`, only these points are searched; results are indices of the cloud.
+  Accepted setInputCloud(const PointCloudConstPtr& cloud, const IndicesConstPtr& indices = IndicesConstPtr()) override {
+    setPoints(cloud, indices);
+    gaussians_.clear();
+    if constexpr (!std::is_void_v<Accepted>) return static_cast<bool>(cloud);
+  }
+
+  /// Sets the Gaussians of a map to search: those of one scale, or of the leaves (see leaves()). The search uses their
+  /// means. The map may be changed or deleted afterwards.
+  ///
+  /// getInputCloud() returns the means as a cloud. PointGaussian gets all fields, other point types get x, y, z. As in
+  /// toPointCloud(), the means are relative to the cloud's sensor_origin_, which is zero unless the map is far from the
+  /// origin; queries must be relative to it too. Throws std::out_of_range if the map does not have the scale.
+  void setInputMap(const GaussianMapOctree& map, std::optional<int> scale = std::nullopt) {
+    detail::MapMeans means(map, scale);
+    auto cloud = pcl::make_shared<PointCloud>();
+    if constexpr (std::is_same_v<PointT, PointGaussian>) {
+      *cloud = means.gaussians(map);
+    } else {
+      cloud->resize(means.means.size());
+      for (std::size_t i = 0; i < means.means.size(); ++i) (*cloud)[i].getVector3fMap() = means.means[i];
+    }
+    cloud->sensor_origin_.template head<3>() = means.origin.template cast<float>();
+    setPoints(cloud, nullptr);
+    gaussians_ = std::move(means.ids);
+  }
+  /// Returns per point of getInputCloud() its Gaussian in the map of setInputMap(). Empty after setInputCloud().
+  const std::vector<GaussianId>& getGaussians() const { return gaussians_; }
+
+  /// Finds the `k` nearest points, or all if there are fewer. Returns their number.
+  int nearestKSearch(const PointT& point, int k, pcl::Indices& k_indices,
+                     std::vector<float>& k_sqr_distances) const override {
+    return search_.nearest(point.data, k, k_indices, k_sqr_distances);
+  }
+  /// Finds all points within a radius [m], or the nearest `max_nn` of them if `max_nn` > 0. Returns their number.
+  int radiusSearch(const PointT& point, double radius, pcl::Indices& k_indices, std::vector<float>& k_sqr_distances,
+                   unsigned int max_nn = 0) const override {
+    return search_.within(point.data, radius, max_nn, this->sorted_results_, k_indices, k_sqr_distances);
+  }
+
+ private:
+  void setPoints(const PointCloudConstPtr& cloud, const IndicesConstPtr& indices) {
+    static_assert(sizeof(PointT) % sizeof(float) == 0);
+    this->input_ = cloud;
+    this->indices_ = indices;
+    search_ = {};
+    if (!cloud) {
+      PCL_ERROR("[gaussmap::%s::setInputCloud] no cloud\n", this->getName().c_str());
+      return;
+    }
+    if (cloud->empty()) return;
+    search_ = detail::CloudSearch({(*cloud)[0].data, cloud->size(), sizeof(PointT) / sizeof(float)}, indices.get());
+  }
+
+  detail::CloudSearch search_;
+  std::vector<GaussianId> gaussians_;
+};
+
+extern template class GaussianMapSearch<pcl::PointXYZ>;
+extern template class GaussianMapSearch<pcl::PointXYZI>;
+extern template class GaussianMapSearch<pcl::PointXYZRGB>;
+extern template class GaussianMapSearch<pcl::PointNormal>;
+extern template class GaussianMapSearch<pcl::PointXYZINormal>;
+extern template class GaussianMapSearch<PointGaussian>;
+
+}  // namespace gaussmap

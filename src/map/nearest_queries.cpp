@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdint>
+
+#include "gaussmap/map/queries.h"
+#include "map/check_query.h"
+#include "map/mean_search.h"
+#include "points/nearest_list.h"
+
+namespace gaussmap {
+using namespace detail;
+
+namespace {
+
+template <int D, typename Entries>
+std::vector<FoundGaussian> resultOf(const Entries& entries) {
+  using Search = MeanSearch<D>;
+  std::vector<FoundGaussian> found;
+  found.reserve(entries.size());
+  for (const auto& entry : entries)
+    found.push_back({{Search::scaleOf(entry.index), Search::indexOf(entry.index)}, entry.distance});
+  return found;
+}
+
+template <int D>
+std::vector<FoundGaussian> nearestMeans(const GaussianMap<D>& map, const Vector<D>& point, int k, int scale) {
+  checkQuery(map.grid(), point);
+  checkCount(k);
+  if (k == 0) return {};
+  NearestList<double, std::uint64_t> list(static_cast<std::size_t>(k), kAnyDistance);
+  MeanSearch<D>(map, point, scale).run(list);
+  return resultOf<D>(list.sort());
+}
+
+template <int D>
+std::vector<FoundGaussian> meansWithin(const GaussianMap<D>& map, const Vector<D>& point, double radius, int scale) {
+  checkQuery(map.grid(), point);
+  checkRadius(radius);
+  NeighboursWithin<double, std::uint64_t> list(radius);
+  MeanSearch<D>(map, point, scale).run(list);
+  return resultOf<D>(list.sort());
+}
+
+}  // namespace
+
+template <int D>
+std::optional<NearestGaussian<D>> nearest(const GaussianMap<D>& map, const Vector<D>& point, int scale) {
+  checkScale(map, scale);
+  if (map.cellCount(scale) == 0) return std::nullopt;
+  checkQuery(map.grid(), point);
+  NearestOne<double, std::uint64_t> one(kAnyDistance);
+  MeanSearch<D>(map, point, scale).run(one);
+  return NearestGaussian<D>{MeanSearch<D>::indexOf(one.best().index), one.best().distance};
+}
+
+template <int D>
+std::vector<FoundGaussian> nearest(const GaussianMap<D>& map, const Vector<D>& point, int k, int scale) {
+  checkScale(map, scale);
+  return nearestMeans(map, point, k, scale);
+}
+
+template <int D>
+std::vector<FoundGaussian> within(const GaussianMap<D>& map, const Vector<D>& point, double radius, int scale) {
+  checkScale(map, scale);
+  return meansWithin(map, point, radius, scale);
+}
+
+template <int D>
+std::vector<FoundGaussian> nearestLeaves(const GaussianMap<D>& map, const Vector<D>& point, int k) {
+  return nearestMeans(map, point, k, MeanSearch<D>::kLeaves);
+}
+
+template <int D>
+std::vector<FoundGaussian> leavesWithin(const GaussianMap<D>& map, const Vector<D>& point, double radius) {
+  return meansWithin(map, point, radius, MeanSearch<D>::kLeaves);
+}
+
+#define GAUSSMAP_INSTANTIATE(D)                                                                          \
+  template std::optional<NearestGaussian<(D)>> nearest<D>(const GaussianMap<D>&, const Vector<D>&, int); \
+  template std::vector<FoundGaussian> nearest<D>(const GaussianMap<D>&, const Vector<D>&, int, int);     \
+  template std::vector<FoundGaussian> within<D>(const GaussianMap<D>&, const Vector<D>&, double, int);   \
+  template std::vector<FoundGaussian> nearestLeaves<D>(const GaussianMap<D>&, const Vector<D>&, int);    \
+  template std::vector<FoundGaussian> leavesWithin<D>(const GaussianMap<D>&, const Vector<D>&, double);
+GAUSSMAP_INSTANTIATE(2)
+GAUSSMAP_INSTANTIATE(3)
+#undef GAUSSMAP_INSTANTIATE
+
+}  // namespace gaussmap
