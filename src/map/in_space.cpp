@@ -8,6 +8,7 @@
 namespace gaussmap::detail {
 
 GaussianMap<3> inSpace(const GaussianMap<2>& map) {
+  if (map.empty()) return GaussianMap<3>(map.options());
   std::vector<MapScale<3>> scales;
   for (int s = 0; s < map.scales(); ++s) {
     const MapScale<2>& from = map.scale(s);

@@ -67,6 +67,7 @@ PlanarFit searchInPlane(const PlanarScan& scan, const GaussianMap<2>& map, const
   // cells, a Gaussian can be a single point; in large ones, it can hold both walls of a corridor.
   double best = 0.0;
   for (const Step& step : steps) {
+    if (&step != &steps.back() && (&step)[1].scale == step.scale) continue;  // only the second step of a scale
     PlanarNeighbours at_scale(map, step.scale, scan.fine, origin);
     const PlanarNeighbours::Surfaces surfaces = at_scale.surfacesAt(found.pose, step.blur, options.kernel);
     if (surfaces.share < best) continue;

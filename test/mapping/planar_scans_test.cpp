@@ -2,11 +2,13 @@
 // Planar maps of scans in space: the points lose z after the limits have been applied.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <mutex>
 
 #include "gaussmap/core/scans.h"
+#include "gaussmap/map/sampling.h"
 #include "gaussmap/mapping/build.h"
+#include "gaussmap/mapping/refine.h"
 #include "map/random_clouds.h"
 
 namespace gaussmap {
@@ -80,6 +82,54 @@ TEST(PlanarScans, InPartsGiveTheSameSums) {
   EXPECT_GT(parts, 2u);
   EXPECT_EQ(counts.accepted, whole.counts.accepted);
   expectSameCells(sum, whole.moments);
+}
+
+/// The distance of a point from the nearest wall of a room of 6 x 4 m.
+double fromWalls(double x, double y) {
+  return std::min({std::abs(x), std::abs(x - 6.0), std::abs(y), std::abs(y - 4.0)});
+}
+
+/// The mean distance from the walls of samples near them [m], of one scale. In space, only samples in the slice count.
+template <int D>
+double errorAtWalls(const GaussianMap<D>& map, int scale) {
+  SampleOptions sampling;
+  sampling.samples = D == 2 ? 20000 : 200000;
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const Vector<D>& point : sampleMap<D>(map, scale, sampling).points) {
+    if constexpr (D == 3)
+      if (point.z() < 1.0 || point.z() >= 1.5) continue;
+    const double error = fromWalls(point.x(), point.y());
+    if (error > 0.5) continue;
+    sum += error;
+    ++count;
+  }
+  EXPECT_GT(count, 5000u);
+  return sum / static_cast<double>(count);
+}
+
+TEST(PlanarScans, OfASliceMapTheWallsAsWellAsTheMapInSpace) {
+  MemoryScans scans;
+  Random random(4);
+  for (int scan = 0; scan < 4; ++scan) {
+    const Pose pose = tiltedPose(1.0 + scan, 0.4 * scan);
+    std::vector<Eigen::Vector3d> points;
+    for (int i = 0; i < 20000; ++i) {  // four walls, 2.5 m high, and the floor, with a noise of 1 cm
+      const double x = 6.0 * random.uniform(), y = 4.0 * random.uniform(), z = 2.5 * random.uniform();
+      const double noise = 0.01 * random.normal();
+      const Eigen::Vector3d in_map[5] = {
+          {x, noise, z}, {x, 4.0 + noise, z}, {noise, y, z}, {6.0 + noise, y, z}, {x, y, noise}};
+      points.push_back(pose.inverse() * in_map[random.below(5)]);
+    }
+    scans.add({points, pose, 0, std::nullopt});
+  }
+  const MapOptions options{0.1, 5, 3, 0.0};
+  AccumulateOptions slice;
+  slice.crop = Box<3>{{-1, -1, 1.0}, {7, 5, 1.5}};
+  const GaussianMap<2> plane = refine<2>(build<2>(scans, options, slice)).map;
+  const GaussianMap<3> space = refine<3>(build<3>(scans, options)).map;
+  for (int scale = 0; scale < 3; ++scale)
+    EXPECT_LT(errorAtWalls(plane, scale), 1.1 * errorAtWalls(space, scale)) << scale;
 }
 
 TEST(PlanarScans, MakeTheMapOfTheirPoints) {
