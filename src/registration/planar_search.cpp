@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <memory>
+#include <vector>
 
 #include "registration/planar_neighbours.h"
 #include "registration/scan_gaussians.h"
@@ -38,6 +39,20 @@ void descendInPlane(PlanarNeighbours& near, double blur, double kernel, const De
   }
 }
 
+/// Returns the information from walls, at the scale whose Gaussians look most like pieces of walls. In small cells, a
+/// Gaussian can be a single point; in large ones, it can hold both walls of a corridor.
+Eigen::Matrix3d surfacesAt(const PlanarPose& pose, const PlanarScan& scan, const GaussianMap<2>& map,
+                           const std::vector<Step>& steps, const Vector<2>& origin, double kernel) {
+  PlanarNeighbours::Surfaces best;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (i + 1 < steps.size() && steps[i + 1].scale == steps[i].scale) continue;  // only the second step of a scale
+    PlanarNeighbours near(map, steps[i].scale, scan.fine, origin);
+    const PlanarNeighbours::Surfaces surfaces = near.surfacesAt(pose, steps[i].blur, kernel);
+    if (surfaces.share >= best.share) best = surfaces;
+  }
+  return best.information;
+}
+
 }  // namespace
 
 PlanarScan::PlanarScan(const GaussianMap<2>& source, double fine_side, std::size_t most)
@@ -51,30 +66,34 @@ PlanarScan::PlanarScan(const GaussianMap<2>& source, double fine_side, std::size
 
 PlanarFit searchInPlane(const PlanarScan& scan, const GaussianMap<2>& map, const PlanarPose& start,
                         const Vector<2>& origin, const PlanarHold& held, const RegistrationOptions& options) {
-  PlanarFit found;
-  found.pose = start;
-  std::optional<PlanarNeighbours> near;
-  int scale = -1;
-  const std::vector<Gaussian<2>>* used = nullptr;
   const std::vector<Step> steps = stepsOf(map);
-  for (const Step& step : steps) {
-    const bool final = &step == &steps.back();
-    const auto* const now = !final && map.grid().side(step.scale) > scan.side ? &scan.coarse : &scan.fine;
-    if (step.scale != scale || now != used) near.emplace(map, scale = step.scale, *(used = now), origin);
-    descendInPlane(*near, step.blur, options.kernel, limitsOf(step, final, options), held, found);
+  std::vector<std::shared_ptr<PlanarNeighbours>> near;  // per step; the steps of a scale share them
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const auto isCoarse = [&](std::size_t step) {
+      return step + 1 < steps.size() && map.grid().side(steps[step].scale) > scan.side;
+    };
+    const bool is_shared = i > 0 && steps[i].scale == steps[i - 1].scale && isCoarse(i) == isCoarse(i - 1);
+    near.push_back(is_shared ? near.back()
+                             : std::make_shared<PlanarNeighbours>(map, steps[i].scale,
+                                                                  isCoarse(i) ? scan.coarse : scan.fine, origin));
   }
-  // Which directions the walls tell is judged at the scale whose Gaussians look most like pieces of walls. In small
-  // cells, a Gaussian can be a single point; in large ones, it can hold both walls of a corridor.
-  double best = 0.0;
-  for (const Step& step : steps) {
-    if (&step != &steps.back() && (&step)[1].scale == step.scale) continue;  // only the second step of a scale
-    PlanarNeighbours at_scale(map, step.scale, scan.fine, origin);
-    const PlanarNeighbours::Surfaces surfaces = at_scale.surfacesAt(found.pose, step.blur, options.kernel);
-    if (surfaces.share < best) continue;
-    best = surfaces.share;
-    found.surfaces = surfaces.information;
+  // Cells that are as large as rooms find a pose that is far away, but they move a good guess away from its place. So
+  // one search begins at every scale, and that with the least cost at the end is the result.
+  PlanarFit best;
+  int iterations = 0;
+  for (std::size_t first = 0; first < steps.size(); ++first) {
+    if (first > 0 && steps[first].scale == steps[first - 1].scale) continue;
+    PlanarFit found;
+    found.pose = start;
+    for (std::size_t i = first; i < steps.size(); ++i)
+      descendInPlane(*near[i], steps[i].blur, options.kernel, limitsOf(steps[i], i + 1 == steps.size(), options), held,
+                     found);
+    iterations += found.iterations;
+    if (first == 0 || found.equations.cost < best.equations.cost) best = found;
   }
-  return found;
+  best.iterations = iterations;
+  best.surfaces = surfacesAt(best.pose, scan, map, steps, origin, options.kernel);
+  return best;
 }
 
 }  // namespace gaussmap::detail

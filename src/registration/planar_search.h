@@ -19,7 +19,7 @@ struct PlanarScan {
   PlanarScan(const GaussianMap<2>& source, double side, std::size_t most);
 };
 
-/// The result of a search from the coarsest scale of the map to the finest.
+/// The result of a search that ends at the finest scale of the map.
 struct PlanarFit {
   PlanarPose pose;                                     ///< relative to the origin of the search
   PlanarEquations equations;                           ///< at `pose`
@@ -28,7 +28,8 @@ struct PlanarFit {
   bool converged = false;
 };
 
-/// Searches the pose of a scan from a start, without moving it along the held directions. All sums are relative to
+/// Searches the pose of a scan from a start, without moving it along the held directions. One search begins at every
+/// scale of the map; that with the least cost at the end is returned. All sums are relative to
 /// `origin` [m], to keep their precision far from zero.
 PlanarFit searchInPlane(const PlanarScan& scan, const GaussianMap<2>& map, const PlanarPose& start,
                         const Vector<2>& origin, const PlanarHold& held, const RegistrationOptions& options);

@@ -70,7 +70,8 @@ GAUSSMAP_API RegistrationResult registerMap(const GaussianMap<3>& source, const 
 
 /// Registers a scan to a planar map: refines x, y and the heading of the guess.
 ///
-/// It works like registerScan() in space, in the plane. `points` are in the scan frame [m]; non-finite points are
+/// It works like registerScan() in space, in the plane. One search begins at every scale of the map; the one with the
+/// least cost at the finest scale is the result. `points` are in the scan frame [m]; non-finite points are
 /// ignored. The tilt of the guess (roll and pitch) is applied to them, and then they lose their height; to register a
 /// slice of a scan in space, give only the points of the slice. The pose of the result has exactly the z and the tilt
 /// of the guess: a guess with a rotation about z gives a rotation about z. In the covariance and in
