@@ -73,7 +73,7 @@ for i in range(1, len(rows), 2):
     truth.write(rows[i])
     os.symlink(f"{sys.argv[1]}/{i:04d}.pcd", f"odd/{i:04d}.pcd")
 PYTHON
-"$gaussmap" pcd2map --planar "$data"/carmen_intel/*[02468].pcd -o even.gmap --resolution 0.05 --ratio 3 --scales 5 >log
+"$gaussmap" pcd2map --planar "$data"/carmen_intel/*[02468].pcd -o even.gmap --resolution 0.05 >log
 "$gaussmap" register odd even.gmap --poses guesses.tum --match-poses name --tum found.tum >log 2>&1
 python3 - <<'PYTHON'
 import math
