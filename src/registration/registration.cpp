@@ -4,7 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <memory>
 #include <stdexcept>
 #include <string>
 
@@ -13,16 +13,15 @@
 #include "registration/descend.h"
 #include "registration/map_neighbours.h"
 #include "registration/normal_equations.h"
+#include "registration/observability.h"
 #include "registration/scan_gaussians.h"
 #include "registration/scan_on_map.h"
+#include "registration/surface_normals.h"
 
 namespace gaussmap {
 using namespace detail;
 
 namespace {
-
-using Vector6 = NormalEquations::Vector6;
-using Matrix6 = NormalEquations::Matrix6;
 
 void check(const GaussianMap<3>& map, const Pose& guess, const RegistrationOptions& options) {
   if (map.empty()) throw std::invalid_argument("the map is empty: there is nothing to register with");
@@ -38,82 +37,126 @@ void check(const GaussianMap<3>& map, const Pose& guess, const RegistrationOptio
   require(options.threads >= 0, "threads", options.threads, "must be at least 1 (0 = all)");
 }
 
-constexpr int kCoarse = 4;  // factor by which the scan's cells are wider at the coarse scales of the map
+constexpr std::size_t kFewestPairs = 3;  // as pcl::Registration: fewer pairs say nothing about a pose
+constexpr int kCoarse = 4;               // factor by which the scan's cells are wider at the coarse scales of the map
+
+constexpr double kFirstBlur = 0.3, kLastBlur = 0.1;  // of the two steps of a scale, as parts of the side of its cells
 
 /// A step from coarse to fine.
 struct Step {
-  int scale;
-  double blur;  // [m]
+  MapNeighbours* near;  // of the scale
+  double side;          // of its cells [m]
+  double blur;          // [m]
 };
 
-std::vector<Step> stepsOf(const GaussianMap<3>& map) {
-  std::vector<Step> steps;
-  for (int scale = map.scales() - 1; scale >= 0; --scale) {
-    if (map.cellCount(scale) == 0) continue;  // possible in a compressed map
-    const double side = map.grid().side(scale);
-    for (const double part : {0.3, 0.1}) steps.push_back({scale, part * side});
+/// The neighbours of all scales that have cells, and the steps of a search over them.
+class Scales {
+ public:
+  /// All coordinates are relative to `origin`, to keep their precision far from zero.
+  Scales(const GaussianMap<3>& map, const Vector<3>& origin) {
+    for (int scale = 0; scale < map.scales(); ++scale) {
+      if (map.cellCount(scale) == 0) continue;  // possible in a compressed map
+      all_.push_back(std::make_unique<MapNeighbours>(map, scale, origin));
+      near_.push_back(all_.back().get());
+      const double side = map.grid().side(scale);
+      steps_.insert(steps_.begin(), {{near_.back(), side, kFirstBlur * side}, {near_.back(), side, kLastBlur * side}});
+    }
   }
-  return steps;
-}
+  const std::vector<Step>& steps() const { return steps_; }
+  /// Finest first. After a search, their blur is that of the last step of their scale.
+  const std::vector<MapNeighbours*>& neighbours() const { return near_; }
+
+ private:
+  std::vector<std::unique_ptr<MapNeighbours>> all_;
+  std::vector<MapNeighbours*> near_;
+  std::vector<Step> steps_;
+};
 
 /// Returns the limits of a step. Before the last step, a hundredth of the blur is accurate enough.
 DescentLimits limitsOf(const Step& step, bool last, const RegistrationOptions& options) {
   const double translation = std::max(options.translation, last ? 0.0 : 0.01 * step.blur);
-  return {options.max_iterations, translation, translation / options.translation * options.rotation};
+  const double factor = std::isfinite(translation) ? translation / options.translation : 1.0;
+  return {options.max_iterations, translation, factor * options.rotation};
 }
 
-/// Computes the covariance of the pose, and finds the direction with the least information. Multiplies rotations by the
-/// range, to make them comparable with metres.
-void judge(const NormalEquations& sums, double range, const RegistrationOptions& options, RegistrationResult& result) {
-  if (sums.met == 0) return;
-  Vector6 unit = Vector6::Ones();
-  unit.tail<3>().setConstant(1.0 / range);
-  const Matrix6 scaled = unit.asDiagonal() * sums.information * unit.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(scaled);
-  const Vector6& told = solver.eigenvalues();
-  if (!(told[5] > 0.0)) return;  // all partners in the map fill their cells
-  result.degenerate = !(told[0] > options.degenerate * told[5]);
-  result.least_observable = solver.eigenvectors().col(0);
-  const Vector6 variances = told.cwiseMax(1e-12 * told[5]).cwiseInverse();
-  const Matrix6 covariance = solver.eigenvectors() * variances.asDiagonal() * solver.eigenvectors().transpose();
-  result.covariance = unit.asDiagonal() * covariance * unit.asDiagonal();
-  result.covariance = 0.5 * (result.covariance + result.covariance.transpose()).eval();
+/// What a search from the coarsest scale to the finest finds.
+struct Found {
+  Pose pose;                          // relative to the origin of the search
+  NormalEquations equations;          // at `pose`
+  NormalEquations::Matrix6 surfaces;  // sum of normals at `pose`
+  int iterations = 0;
+  bool converged = false;
+};
+
+/// The Gaussians that represent a scan.
+struct Source {
+  std::vector<Gaussian<3>> fine, coarse;
+  double side;   // of the cells of `fine` [m]
+  double range;  // root mean square [m]
+  bool planar;   // of a planar laser
+
+  Source(const GaussianMap<3>& source, double fine_side, std::size_t most)
+      : fine(gaussiansOf(source, fine_side, most)),
+        coarse(gaussiansOf(source, kCoarse * fine_side, most)),
+        side(fine_side),
+        range(rangeOf(fine)),
+        planar(isOfPlanarLaser(fine)) {}
+
+ private:
+  static double rangeOf(const std::vector<Gaussian<3>>& gaussians) {
+    double squared = 0.0;
+    for (const Gaussian<3>& gaussian : gaussians) squared += gaussian.mean.squaredNorm() / double(gaussians.size());
+    return std::max(1e-6, std::sqrt(squared));
+  }
+};
+
+/// Searches the pose from a start, without moving it along the directions `held`.
+Found search(const Source& source, const Scales& scales, const Pose& start, const HeldDirections& held,
+             const RegistrationOptions& options) {
+  Found found{start, {}, {}};
+  for (const Step& step : scales.steps()) {
+    step.near->setBlur(step.blur);
+    const bool final = &step == &scales.steps().back();
+    const auto& scan = !final && step.side > source.side ? source.coarse : source.fine;
+    ScanOnMap on_map(scan, *step.near, options.kernel, options.threads);
+    const DescentResult down = descend([&](const Pose& where) { return on_map.linearise(where); }, found.pose,
+                                       limitsOf(step, final, options), held);
+    found.pose = down.pose;
+    found.equations = down.equations;
+    found.iterations += down.iterations;
+    found.converged = down.converged;
+  }
+  found.surfaces = sumOfNormals(source.fine, scales.neighbours(), found.pose, options.kernel, source.planar);
+  return found;
 }
 
-RegistrationResult align(const GaussianMap<3>& source, const GaussianMap<3>& map, double side, const Pose& guess,
+RegistrationResult align(const GaussianMap<3>& source_map, const GaussianMap<3>& map, double side, const Pose& guess,
                          const RegistrationOptions& options) {
   RegistrationResult result;
   result.pose = normalised(guess);
-  const std::vector<Gaussian<3>> fine = gaussiansOf(source, side, options.max_gaussians),
-                                 coarse = gaussiansOf(source, kCoarse * side, options.max_gaussians);
-  if (fine.empty()) return result;
-  const Vector<3> origin = guess.translation;  // all sums are relative to it, to keep their precision far from zero
-  Pose pose = result.pose;
-  pose.translation.setZero();
-  NormalEquations last;
-  std::optional<MapNeighbours> near;
-  int scale = -1;
-  const std::vector<Step> steps = stepsOf(map);
-  for (const Step& step : steps) {
-    if (step.scale != scale) near.emplace(map, scale = step.scale, origin);
-    near->setBlur(step.blur);
-    const bool final = &step == &steps.back();
-    const auto& scan = !final && map.grid().side(scale) > side ? coarse : fine;
-    ScanOnMap on_map(scan, *near, options.kernel, options.threads);
-    const DescentResult down =
-        descend([&](const Pose& where) { return on_map.linearise(where); }, pose, limitsOf(step, final, options));
-    pose = down.pose;
-    last = down.equations;
-    result.iterations += down.iterations;
-    result.converged = down.converged;
-  }
-  result.pose = pose;
+  const Source source(source_map, side, options.max_gaussians);
+  if (source.fine.empty()) return result;
+  const Vector<3> origin = guess.translation;
+  const Scales scales(map, origin);
+  Pose start = result.pose;
+  start.translation.setZero();
+  // Which directions are unobservable is clear only at the end of a search. By then, the coarse scales may have moved
+  // the pose along them, towards the borders of the seen area. So the search starts again, and holds them.
+  HeldDirections held(source.range);
+  Found found;
+  do {
+    found = search(source, scales, start, held, options);
+    result.iterations += found.iterations;
+    if (found.equations.met < kFewestPairs || !(found.surfaces.trace() > 0.0)) return result;
+    result.least_observable = leastObservable(found.surfaces, source.range);
+  } while (held.hold(found.surfaces, options.degenerate));
+  result.pose = found.pose;
   result.pose.translation += origin;
-  result.fitness = double(last.near) / double(fine.size());
-  if (last.near > 0) result.mean_squared = last.near_squared / double(last.near);
-  double squared_range = 0.0;
-  for (const Gaussian<3>& gaussian : fine) squared_range += gaussian.mean.squaredNorm() / double(fine.size());
-  judge(last, std::max(1e-6, std::sqrt(squared_range)), options, result);
+  result.covariance = held.covarianceOf(found.equations.information);
+  result.fitness = double(found.equations.near) / double(source.fine.size());
+  if (found.equations.near > 0) result.mean_squared = found.equations.near_squared / double(found.equations.near);
+  result.converged = found.converged;
+  result.degenerate = !held.isEmpty();
   return result;
 }
 

@@ -13,4 +13,7 @@ namespace gaussmap::detail {
 /// most `most` of them evenly.
 std::vector<Gaussian<3>> gaussiansOf(const GaussianMap<3>& source, double side, std::size_t most);
 
+/// Returns true if these are the Gaussians of a scan of a planar laser: lines in one plane.
+bool isOfPlanarLaser(const std::vector<Gaussian<3>>& scan);
+
 }  // namespace gaussmap::detail
