@@ -9,13 +9,14 @@
 #include "registration/planar_neighbours.h"
 #include "registration/scan_gaussians.h"
 #include "registration/steps.h"
+#include "registration/wall_normals.h"
 
 namespace gaussmap::detail {
 namespace {
 
 /// Damped Gauss-Newton iterations on one scale, as in descend().
 void descendInPlane(PlanarNeighbours& near, double blur, double kernel, const DescentLimits& limits,
-                    const PlanarHold& held, PlanarFit& here) {
+                    const HeldPlanarDirections& held, PlanarFit& here) {
   here.equations = near.linearise(here.pose, blur, kernel);
   here.converged = false;
   double damping = 1e-6;
@@ -27,7 +28,7 @@ void descendInPlane(PlanarNeighbours& near, double blur, double kernel, const De
     const Eigen::Vector3d by = held.step(damped, here.equations.gradient);
     const PlanarPose next{here.pose.position + by.head<2>(), here.pose.heading + by.z()};
     const PlanarEquations there = near.linearise(next, blur, kernel);
-    here.converged = by.head<2>().norm() < limits.translation && std::abs(by.z()) < limits.rotation;
+    here.converged = by.head<2>().norm() <= limits.translation && std::abs(by.z()) <= limits.rotation;
     if (there.cost <= here.equations.cost) {
       here.pose = next;
       here.equations = there;
@@ -39,18 +40,32 @@ void descendInPlane(PlanarNeighbours& near, double blur, double kernel, const De
   }
 }
 
-/// Returns the information from walls, at the scale whose Gaussians look most like pieces of walls. In small cells, a
-/// Gaussian can be a single point; in large ones, it can hold both walls of a corridor.
-Eigen::Matrix3d surfacesAt(const PlanarPose& pose, const PlanarScan& scan, const GaussianMap<2>& map,
-                           const std::vector<Step>& steps, const Vector<2>& origin, double kernel) {
-  PlanarNeighbours::Surfaces best;
-  for (std::size_t i = 0; i < steps.size(); ++i) {
-    if (i + 1 < steps.size() && steps[i + 1].scale == steps[i].scale) continue;  // only the second step of a scale
-    PlanarNeighbours near(map, steps[i].scale, scan.fine, origin);
-    const PlanarNeighbours::Surfaces surfaces = near.surfacesAt(pose, steps[i].blur, kernel);
-    if (surfaces.share >= best.share) best = surfaces;
+/// A step from coarse to fine.
+struct PlanarStep {
+  int scale;
+  double blur;     // [m]
+  bool is_coarse;  // the step uses the coarse Gaussians of the scan
+};
+
+/// Returns two steps per scale of the map, from the coarsest to the finest.
+std::vector<PlanarStep> planarSteps(const GaussianMap<2>& map, double side) {
+  std::vector<PlanarStep> steps;
+  for (int scale = map.scales() - 1; scale >= 0; --scale) {
+    if (map.cellCount(scale) == 0) continue;  // possible in a compressed map
+    for (const double part : {kFirstBlur, kLastBlur})
+      steps.push_back({scale, part * map.grid().side(scale), map.grid().side(scale) > side});
   }
-  return best.information;
+  if (!steps.empty()) steps.back().is_coarse = false;
+  return steps;
+}
+
+Eigen::Matrix3d wallNormalsAt(const PlanarPose& pose, const PlanarScan& scan, const GaussianMap<2>& map,
+                              const Vector<2>& origin, double kernel) {
+  std::vector<PlanarScale> scales;
+  for (int scale = 0; scale < map.scales(); ++scale)
+    if (map.cellCount(scale) > 0)
+      scales.push_back({PlanarNeighbours(map, scale, scan.fine, origin), kLastBlur * map.grid().side(scale)});
+  return sumOfWallNormals(scan.fine, scales, pose, kernel);
 }
 
 }  // namespace
@@ -65,17 +80,15 @@ PlanarScan::PlanarScan(const GaussianMap<2>& source, double fine_side, std::size
 }
 
 PlanarFit searchInPlane(const PlanarScan& scan, const GaussianMap<2>& map, const PlanarPose& start,
-                        const Vector<2>& origin, const PlanarHold& held, const RegistrationOptions& options) {
-  const std::vector<Step> steps = stepsOf(map);
+                        const Vector<2>& origin, const HeldPlanarDirections& held, const RegistrationOptions& options) {
+  const std::vector<PlanarStep> steps = planarSteps(map, scan.side);
   std::vector<std::shared_ptr<PlanarNeighbours>> near;  // per step; the steps of a scale share them
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    const auto isCoarse = [&](std::size_t step) {
-      return step + 1 < steps.size() && map.grid().side(steps[step].scale) > scan.side;
-    };
-    const bool is_shared = i > 0 && steps[i].scale == steps[i - 1].scale && isCoarse(i) == isCoarse(i - 1);
+    const bool is_shared =
+        i > 0 && steps[i].scale == steps[i - 1].scale && steps[i].is_coarse == steps[i - 1].is_coarse;
     near.push_back(is_shared ? near.back()
-                             : std::make_shared<PlanarNeighbours>(map, steps[i].scale,
-                                                                  isCoarse(i) ? scan.coarse : scan.fine, origin));
+                             : std::make_shared<PlanarNeighbours>(
+                                   map, steps[i].scale, steps[i].is_coarse ? scan.coarse : scan.fine, origin));
   }
   // Cells that are as large as rooms find a pose that is far away, but they move a good guess away from its place. So
   // one search begins at every scale, and that with the least cost at the end is the result.
@@ -86,13 +99,13 @@ PlanarFit searchInPlane(const PlanarScan& scan, const GaussianMap<2>& map, const
     PlanarFit found;
     found.pose = start;
     for (std::size_t i = first; i < steps.size(); ++i)
-      descendInPlane(*near[i], steps[i].blur, options.kernel, limitsOf(steps[i], i + 1 == steps.size(), options), held,
-                     found);
+      descendInPlane(*near[i], steps[i].blur, options.kernel, limitsOf(steps[i].blur, i + 1 == steps.size(), options),
+                     held, found);
     iterations += found.iterations;
     if (first == 0 || found.equations.cost < best.equations.cost) best = found;
   }
   best.iterations = iterations;
-  best.surfaces = surfacesAt(best.pose, scan, map, steps, origin, options.kernel);
+  best.surfaces = wallNormalsAt(best.pose, scan, map, origin, options.kernel);
   return best;
 }
 
