@@ -1,11 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Makes the pictures of the documentation again: docs/*.png, from a simulated street. Needs the viewer and ImageMagick
-# (apt-get install imagemagick fonts-lato). Usage: docs/pictures.sh GAUSSMAP
+# Makes the pictures of the documentation again: docs/*.png, from a simulated street and a simulated plan. Needs the
+# viewer, ImageMagick and a browser (apt-get install imagemagick fonts-lato chromium). Usage: docs/pictures.sh GAUSSMAP
 set -euo pipefail
 gaussmap=$(realpath "${1:?usage: docs/pictures.sh GAUSSMAP}")
 docs=$(cd "$(dirname "$0")" && pwd)
-command -v convert >/dev/null || { echo "docs/pictures.sh: apt-get install imagemagick fonts-lato" >&2; exit 1; }
+for program in convert chromium; do
+  command -v $program >/dev/null ||
+    { echo "docs/pictures.sh: apt-get install imagemagick fonts-lato chromium" >&2; exit 1; }
+done
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
@@ -31,4 +34,13 @@ for scale in 0 1 2; do
     --png view.png --force
   convert view.png +dither -colors 64 -define png:compression-level=9 "$docs/street-$scale.png"
 done
+
+# A planar map: the coarsest scale over the finest one, as in planar.md.
+"$gaussmap" simulate plan -o plan --noise 0.02
+"$gaussmap" pcd2map --planar plan/scans -o plan.gmap --resolution 0.05
+"$gaussmap" draw plan.gmap -o plan.svg --overlay
+size=$(sed -n "1s/.*width='\([0-9]*\)[^']*' height='\([0-9]*\).*/\1,\2/p" plan.svg)
+chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --window-size="$size" --screenshot=plan.png \
+  "file://$PWD/plan.svg"
+convert plan.png +dither -colors 64 -define png:compression-level=9 "$docs/planar.png"
 ls -l "$docs"/*.png

@@ -88,7 +88,8 @@ Panel panelOf(const std::string& path, const DrawCommand& options) {
   const double sigma = options.sigma.value_or(kOverlaySigma);
   panel.title += " over " + titleOf(map, 0);
   panel.squares = squaresOf(map, scale);
-  panel.keys = {{kCoarseColour, "coarse scale", false}, {kFineColour, "finest scale", false}, {"#000000", "coarse cells", true}};
+  panel.keys = {
+      {kCoarseColour, "coarse scale", false}, {kFineColour, "finest scale", false}, {"#000000", "coarse cells", true}};
   addEllipses(map, scale, sigma, kCoarseColour, panel);
   addEllipses(map, 0, sigma, kFineColour, panel);
   return panel;

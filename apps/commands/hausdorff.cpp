@@ -27,8 +27,9 @@ the same way at the same scale, so the distance of two equal maps is 0.
 
 A planar map lies in the plane z = 0. Scans lose their heights, and 3-D scans need --slice.
 
---held-out: a point x scores ln((1 - e) p(x) + e / V). p is the density of the scale [1/m^3, planar maps 1/m^2], e is --background, and
-V is the volume (planar: area) of the box around the points. A point far from all Gaussians ("nowhere") scores the floor ln(e / V).
+--held-out: a point x scores ln((1 - e) p(x) + e / V). p is the density of the scale [1/m^3] (planar: [1/m^2]), e is
+--background, and V is the volume (planar: area) of the box around the points. A point far from all Gaussians
+("nowhere") scores the floor ln(e / V).
 Larger is better. Compare only scores of the same points. Make sure that the map was not built from these points.
 
 --write-errors: fields x y z error rgb, from blue = 0 over cyan, green and yellow to red = 99 % quantile and above.

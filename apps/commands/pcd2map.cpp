@@ -18,10 +18,11 @@ namespace {
 const Help kPcd2mapHelp = {
     "Build a map from scans", "gaussmap pcd2map scans/*.pcd -o street.gmap --resolution 0.2 --budget 3",
     R"(Reads PCD, PLY, LAS, LAZ, E57, .bin (KITTI, nuScenes), text, PTS, PTX, logs of CARMEN, and recordings of ROS (MCAP,
-rosbag2, bags of ROS 1). The pose of a scan is that in its file: VIEWPOINT, the pose in an E57 or PTX file or a log, tf or odometry of a
-recording. --poses replaces it: TUM (t x y z qx qy qz qw), KITTI (12 numbers), CSV with a header line, and others.
-Poses are matched to scans by name, time or number, else by order. gaussmap scans shows the result. With --frame map,
-the points are already in the map frame. gaussmap assumes the same for LAS and LAZ files, unless --poses is given.
+rosbag2, bags of ROS 1). The pose of a scan is that in its file: VIEWPOINT, the pose in an E57 or PTX file or a log, tf
+or odometry of a recording. --poses replaces it: TUM (t x y z qx qy qz qw), KITTI (12 numbers), CSV with a header line,
+and others. Poses are matched to scans by name, time or number, else by order. gaussmap scans shows the result. With
+--frame map, the points are already in the map frame. gaussmap assumes the same for LAS and LAZ files, unless --poses is
+given.
 
 --update adds scans to a map file and writes only the tiles that change. The finest scale then equals that of a map
 of all scans. Coarse cells with new points are rebuilt within --budget (default: the budget of the last refinement,
@@ -76,8 +77,8 @@ void addOptions(Command& command, Pcd2mapOptions& options) {
   command.text("-o,--output", options.output.path, "map file to write (.gmap)");
   command.force(options.output.force);
   command.text("--update", options.update, "map file to add the scans to (.gmap)");
-  command.flag("--planar", options.planar, "build a planar map (2-D): the points lose their heights");
-  addSlice(command, options.slice);
+  command.flag("--planar", options.planar, "build a planar map (2-D); 3-D scans need --slice Z0 Z1");
+  addSlice(command, options.slice).rare();
   command.number("--resolution", options.map.resolution, "side of the finest cells [m]");
   command.number("--scales", options.map.scales, "number of scales");
   command.number("--ratio", options.map.ratio, "ratio of the cell sides of two neighbouring scales").rare();

@@ -26,7 +26,6 @@ Option addSlice(Command& command, Slice& slice) {
   return command
       .numbers("--slice", slice, 2, -1e6, 1e6,
                "for planar maps: use only points of 3-D scans between these two heights in the map frame [m]")
-      .type("Z0 Z1")
       .onePerUse();
 }
 

@@ -23,11 +23,7 @@ std::vector<std::string> scanEndings() {
 }
 
 void addScanPaths(Command& command, ScanInput& input) {
-  command
-      .texts("scans", input.paths,
-             "files of scans (PCD, PLY, LAS, LAZ, E57, .bin, text, CARMEN, MCAP, db3, bag), or directories of them (in "
-             "natural "
-             "order)")
+  command.texts("scans", input.paths, "scans (PCD, PLY, LAS, LAZ, E57, text, CARMEN, MCAP, bag ...), or directories")
       .required();
   command.files({"scans"}, scanEndings());
 }

@@ -5,13 +5,14 @@
 
 #include "gaussmap/core/pose.h"
 #include "registration/normal_equations.h"
+#include "registration/observability.h"
 
 namespace gaussmap::detail {
 
 struct DescentLimits {
   int max_iterations;
-  double translation;  ///< converged when an iteration moves less than this [m] ...
-  double rotation;     ///< ... and turns less than this [rad]
+  double translation;  ///< converged when an iteration moves at most this [m] ...
+  double rotation;     ///< ... and turns at most this [rad]
 };
 
 struct DescentResult {
@@ -22,8 +23,8 @@ struct DescentResult {
 };
 
 /// Minimises the cost by damped Gauss-Newton (Levenberg, Marquardt). A step that raises the cost is rejected and
-/// tried shorter. `at` gives the equations at a pose.
+/// tried shorter. `at` gives the equations at a pose. The pose does not move along the directions `held`.
 DescentResult descend(const std::function<NormalEquations(const Pose&)>& at, const Pose& start,
-                      const DescentLimits& limits);
+                      const DescentLimits& limits, const HeldDirections& held = HeldDirections(1.0));
 
 }  // namespace gaussmap::detail

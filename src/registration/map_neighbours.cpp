@@ -46,6 +46,7 @@ void MapNeighbours::addCandidates(Cell& cell) {
     const Vector<3> mean = gaussian.mean + centre - origin_;
     candidates_.push_back({mean.x(), mean.y(), mean.z(), 0, 0, 0, 0, 0, 0});
     cov_.push_back(gaussian.cov);
+    count_.push_back(gaussian.weight);
     place_.push_back(kNone);
     widen(candidates_.size() - 1);
   }
@@ -54,7 +55,7 @@ void MapNeighbours::addCandidates(Cell& cell) {
 void MapNeighbours::workOut(std::uint32_t i) {
   const Candidate& candidate = candidates_[i];
   const PrincipalAxes<3> axes = principalAxes(Gaussian<3>{Vector<3>::Zero(), cov_[i], 1.0});
-  MapGaussian made{{candidate.x, candidate.y, candidate.z}, axes.directions, axes.variances, {}};
+  MapGaussian made{{candidate.x, candidate.y, candidate.z}, axes.directions, axes.variances, {}, count_[i]};
   // A uniform density over the whole cell has a variance of side^2 / 12. The end of such an axis is the end of the
   // cell, not that of a surface.
   const double whole = map_.grid().side(scale_) * map_.grid().side(scale_) / 12.0;

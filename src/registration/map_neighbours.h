@@ -15,6 +15,7 @@ struct MapGaussian {
   Matrix<3> directions;  ///< unit axes, one per column
   Vector<3> variances;   ///< along the axes [m^2], without blur
   Vector<3> tells;       ///< weight per axis: 1 = thin; 0 = fills its cell, a shift along it is unobservable
+  double count = 1.0;    ///< points
 };
 
 /// Finds the Gaussians of one scale around a point: those of the eight cells that meet at the cell corner nearest to
@@ -80,6 +81,7 @@ class MapNeighbours {
   std::vector<std::uint32_t> members_;  // candidates, list after list
   std::vector<Candidate> candidates_;
   std::vector<Matrix<3>> cov_;        // of the candidates
+  std::vector<double> count_;         // points of the candidates
   std::vector<std::uint32_t> place_;  // index of the candidates in worked_out_
   std::vector<MapGaussian> worked_out_;
 };

@@ -27,39 +27,4 @@ struct PlanarEquations {
   double near_squared = 0.0;  ///< sum of the squared Mahalanobis distances of these
 };
 
-/// Directions of a planar pose along which a search keeps its start, because the map says too little about them.
-///
-/// To compare the heading with x and y, the directions are in scaled units: x, y [m], heading times the RMS range of
-/// the scan [m].
-class PlanarHold {
- public:
-  /// Holds no direction. `range`: RMS range of the scan [m], > 0.
-  explicit PlanarHold(double range) : units_(1.0, 1.0, 1.0 / range), range_(range) {}
-
-  /// Holds all directions with little information, too: at most `limit` times that of the best direction.
-  /// Returns true if there is at least one that was not held before.
-  bool hold(const Eigen::Matrix3d& information, double limit);
-
-  bool isEmpty() const { return count_ == 0; }
-  /// Returns the step -A^-1 g within the directions that are free.
-  Eigen::Vector3d step(const Eigen::Matrix3d& matrix, const Eigen::Vector3d& gradient) const;
-  /// Returns the covariance of (x, y, heading): the inverse of the information along the free directions, and a
-  /// standard deviation of `range` (1 rad for the heading) along the held ones. It is symmetric positive definite.
-  Eigen::Matrix3d covarianceOf(const Eigen::Matrix3d& information) const;
-  /// Returns the direction with the least information, as a unit vector in scaled units.
-  Eigen::Vector3d leastObservable(const Eigen::Matrix3d& information) const;
-
- private:
-  Eigen::Matrix3d scaled(const Eigen::Matrix3d& matrix) const {
-    return units_.asDiagonal() * matrix * units_.asDiagonal();
-  }
-  auto held() const { return basis_.leftCols(count_); }
-  auto free() const { return basis_.rightCols(3 - count_); }
-
-  Eigen::Vector3d units_;  // change of the pose per scaled unit
-  double range_;
-  Eigen::Matrix3d basis_ = Eigen::Matrix3d::Identity();  // orthonormal, scaled units; the held directions first
-  Eigen::Index count_ = 0;                               // of held directions
-};
-
 }  // namespace gaussmap::detail

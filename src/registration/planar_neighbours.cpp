@@ -22,13 +22,12 @@ struct PlanarPair {
   double squared = 0.0;                   // squared Mahalanobis distance
 };
 
-PlanarPair pairOf(const Vector<2>& residual, const Matrix<2>& scan_cov, const PlanarTarget& target,
-                  const Vector<2>& weights, double blur) {
+PlanarPair pairOf(const Vector<2>& residual, const Matrix<2>& scan_cov, const PlanarTarget& target, double blur) {
   PlanarPair pair;
   for (int axis = 0; axis < 2; ++axis) {
     const Vector<2> along = target.directions.col(axis);
     const double variance = target.variances[axis] + blur * blur + along.dot(scan_cov * along);
-    pair.weights += weights[axis] / variance * along * along.transpose();
+    pair.weights += target.tells[axis] / variance * along * along.transpose();
   }
   pair.pull = pair.weights * residual;
   pair.squared = residual.dot(pair.pull);
@@ -64,13 +63,11 @@ std::uint32_t PlanarNeighbours::targetOf(std::size_t gaussian, const Vector<2>& 
   if (place_[gaussian] != kNone) return place_[gaussian];
   const Gaussian<2> local = map_.localGaussian(gaussian, scale_);
   const PrincipalAxes<2> axes = principalAxes(local);
-  PlanarTarget target{local.mean + centre - origin_, local.cov, axes.directions, axes.variances, {}, 0.0};
+  PlanarTarget target{local.mean + centre - origin_, local.cov, axes.directions, axes.variances, {}, local.weight};
   const double whole = map_.grid().side(scale_) * map_.grid().side(scale_) / 12.0;
   for (int axis = 0; axis < 2; ++axis) {
     const double open = std::max(0.0, 1.0 - axes.variances[axis] / (kFullCell * whole));
     target.tells[axis] = (axis > 0 && scale_ == 0 ? kLongAxis : 1.0) * open * open;
-    const double thinner = 1.0 - axes.variances[0] / axes.variances[1];
-    if (axis == 0) target.surface = open * open * thinner * thinner;
   }
   place_[gaussian] = static_cast<std::uint32_t>(targets_.size());
   targets_.push_back(target);
@@ -127,25 +124,9 @@ PlanarEquations PlanarNeighbours::linearise(const PlanarPose& pose, double blur,
       continue;
     }
     const Matrix<2> cov = rotation * scan_[i].cov * rotation.transpose();
-    addPair(pairOf(point - target->mean, cov, *target, target->tells, blur), arm, kernel, sums);
+    addPair(pairOf(point - target->mean, cov, *target, blur), arm, kernel, sums);
   }
   return sums;
-}
-
-PlanarNeighbours::Surfaces PlanarNeighbours::surfacesAt(const PlanarPose& pose, double blur, double kernel) {
-  const Matrix<2> rotation = pose.rotation();
-  PlanarEquations sums;
-  Surfaces surfaces;
-  for (std::size_t i = 0; i < scan_.size(); ++i) {
-    const Vector<2> arm = rotation * scan_[i].mean, point = arm + pose.position;
-    const PlanarTarget* const target = nearest(i, point, blur);
-    if (target == nullptr) continue;
-    surfaces.share += target->surface / static_cast<double>(scan_.size());
-    const Matrix<2> cov = rotation * scan_[i].cov * rotation.transpose();
-    addPair(pairOf(point - target->mean, cov, *target, {target->surface, 0.0}, blur), arm, kernel, sums);
-  }
-  surfaces.information = sums.information;
-  return surfaces;
 }
 
 }  // namespace gaussmap::detail

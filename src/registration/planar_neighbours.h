@@ -17,7 +17,7 @@ struct PlanarTarget {
   Matrix<2> directions;  ///< unit axes, one per column, the thinner one first
   Vector<2> variances;   ///< along the axes [m^2], without blur
   Vector<2> tells;       ///< weight per axis: 1 = thin; 0 = fills its cell, a shift along it is unobservable
-  double surface;        ///< weight as a piece of a wall: 1 = much longer than thick, 0 = round, or it fills its cell
+  double count;          ///< number of points
 };
 
 /// Pairs the Gaussians of a planar scan with those of one scale of a map, for any pose of the scan. Keeps references to
@@ -33,14 +33,10 @@ class PlanarNeighbours {
   /// [m]. Each Gaussian of the scan is paired with the one of smallest Mahalanobis distance.
   PlanarEquations linearise(const PlanarPose& pose, double blur, double kernel);
 
-  /// What the walls say about the pose.
-  struct Surfaces {
-    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< only from the thin axes of pieces of walls
-    double share = 0.0;  ///< sum of PlanarTarget::surface / number of Gaussians of the scan
-  };
-  /// Returns the part of the information that comes from walls. It leaves out what only looks like information: the
-  /// ends of the seen area, and the gaps between the beams.
-  Surfaces surfacesAt(const PlanarPose& pose, double blur, double kernel);
+  /// Returns the Gaussian of the map with the smallest Mahalanobis distance from a point [m, relative to the origin],
+  /// where Gaussian `i` of the scan is. Returns nullptr if there is none near it. The pointer is valid until the next
+  /// call.
+  const PlanarTarget* nearest(std::size_t i, const Vector<2>& point, double blur);
 
  private:
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
@@ -52,7 +48,6 @@ class PlanarNeighbours {
 
   void lookUp(Candidates& candidates, const Vector<2>& point);
   std::uint32_t targetOf(std::size_t gaussian, const Vector<2>& centre);
-  const PlanarTarget* nearest(std::size_t i, const Vector<2>& point, double blur);
 
   const GaussianMap<2>& map_;
   const int scale_;

@@ -8,6 +8,7 @@
 #include "gaussmap/mapping/build.h"
 #include "gaussmap/registration/registration.h"
 #include "registration/check_options.h"
+#include "registration/observability.h"
 #include "registration/planar_search.h"
 #include "registration/steps.h"
 
@@ -53,13 +54,13 @@ RegistrationResult alignInPlane(const GaussianMap<2>& source, const GaussianMap<
   const Vector<2> origin = guess.translation.head<2>();
   // Which directions are unobservable is clear only at the end of a search. By then, the coarse scales may have moved
   // the pose along them, towards the borders of the seen area. So the search starts again, and holds them.
-  PlanarHold held(scan.range);
+  HeldPlanarDirections held(scan.range);
   PlanarFit found;
   do {
     found = searchInPlane(scan, map, {Vector<2>::Zero(), start.heading}, origin, held, options);
     result.iterations += found.iterations;
-    if (found.surfaces.isZero(0.0)) continue;
-    const Eigen::Vector3d least = held.leastObservable(found.surfaces);
+    if (found.equations.met < kFewestPairs || !(found.surfaces.trace() > 0.0)) return result;
+    const Eigen::Vector3d least = leastObservable(found.surfaces, scan.range);
     result.least_observable << least.x(), least.y(), 0.0, 0.0, 0.0, least.z();
   } while (held.hold(found.surfaces, options.degenerate));
   result.pose.translation.head<2>() = origin + found.pose.position;

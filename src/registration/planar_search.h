@@ -5,6 +5,7 @@
 
 #include "gaussmap/map/gaussian_map.h"
 #include "gaussmap/registration/registration.h"
+#include "registration/observability.h"
 #include "registration/planar_equations.h"
 
 namespace gaussmap::detail {
@@ -19,18 +20,19 @@ struct PlanarScan {
   PlanarScan(const GaussianMap<2>& source, double side, std::size_t most);
 };
 
-/// The result of a search from the coarsest scale of the map to the finest.
+/// The result of a search that ends at the finest scale of the map.
 struct PlanarFit {
   PlanarPose pose;                                     ///< relative to the origin of the search
   PlanarEquations equations;                           ///< at `pose`
-  Eigen::Matrix3d surfaces = Eigen::Matrix3d::Zero();  ///< information from walls, at `pose`
+  Eigen::Matrix3d surfaces = Eigen::Matrix3d::Zero();  ///< sumOfWallNormals() at `pose`
   int iterations = 0;
   bool converged = false;
 };
 
-/// Searches the pose of a scan from a start, without moving it along the held directions. All sums are relative to
+/// Searches the pose of a scan from a start, without moving it along the held directions. One search begins at every
+/// scale of the map; that with the least cost at the end is returned. All sums are relative to
 /// `origin` [m], to keep their precision far from zero.
 PlanarFit searchInPlane(const PlanarScan& scan, const GaussianMap<2>& map, const PlanarPose& start,
-                        const Vector<2>& origin, const PlanarHold& held, const RegistrationOptions& options);
+                        const Vector<2>& origin, const HeldPlanarDirections& held, const RegistrationOptions& options);
 
 }  // namespace gaussmap::detail

@@ -1,10 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "registration/scan_gaussians.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 namespace gaussmap::detail {
+namespace {
+
+// Largest thickness of a plane / its extent, squared: points that were rounded to floats.
+constexpr double kFlat = 1e-9;
+constexpr double kNarrow = 0.1;  // of a line or a disc: the smaller variance is at most this part of the larger one
+
+}  // namespace
 
 template <int D>
 std::vector<Gaussian<D>> gaussiansOf(const GaussianMap<D>& source, double side, std::size_t most) {
@@ -17,6 +25,24 @@ std::vector<Gaussian<D>> gaussiansOf(const GaussianMap<D>& source, double side, 
   gaussians.reserve(taken);
   for (std::size_t i = 0; i < taken; ++i) gaussians.push_back(source.gaussian(i * count / taken, scale));
   return gaussians;
+}
+
+bool isOfPlanarLaser(const std::vector<Gaussian<3>>& scan) {
+  if (scan.size() < 4) return false;
+  Vector<3> centre = Vector<3>::Zero();
+  for (const Gaussian<3>& gaussian : scan) centre += gaussian.mean / double(scan.size());
+  Matrix<3> scatter = Matrix<3>::Zero();
+  for (const Gaussian<3>& gaussian : scan) scatter += (gaussian.mean - centre) * (gaussian.mean - centre).transpose();
+  const Vector<3> spread = Eigen::SelfAdjointEigenSolver<Matrix<3>>(scatter, Eigen::EigenvaluesOnly).eigenvalues();
+  if (spread[0] > kFlat * spread[2]) return false;
+  std::size_t lines = 0, discs = 0;
+  for (const Gaussian<3>& gaussian : scan) {
+    const Vector<3> variances = principalAxes(gaussian).variances;
+    const bool is_line = variances[1] <= kNarrow * variances[2];
+    lines += is_line;
+    discs += !is_line && variances[0] <= kNarrow * variances[1];
+  }
+  return lines > discs;
 }
 
 template std::vector<Gaussian<2>> gaussiansOf<2>(const GaussianMap<2>&, double, std::size_t);

@@ -14,4 +14,7 @@ namespace gaussmap::detail {
 template <int D>
 std::vector<Gaussian<D>> gaussiansOf(const GaussianMap<D>& source, double side, std::size_t most);
 
+/// Returns true if these are the Gaussians of a scan of a planar laser: lines in one plane.
+bool isOfPlanarLaser(const std::vector<Gaussian<3>>& scan);
+
 }  // namespace gaussmap::detail

@@ -2,38 +2,24 @@
 #pragma once
 
 #include <algorithm>
-#include <vector>
+#include <cmath>
+#include <cstddef>
 
-#include "gaussmap/map/gaussian_map.h"
 #include "gaussmap/registration/registration.h"
 #include "registration/descend.h"
 
+// What registrations in space and in the plane have in common.
 namespace gaussmap::detail {
 
-constexpr int kCoarse = 4;  // factor by which the scan's cells are wider at the coarse scales of the map
+constexpr std::size_t kFewestPairs = 3;  // as pcl::Registration: fewer pairs say nothing about a pose
+constexpr int kCoarse = 4;               // factor by which the scan's cells are wider at the coarse scales of the map
+constexpr double kFirstBlur = 0.3, kLastBlur = 0.1;  // of the two steps of a scale, as parts of the side of its cells
 
-/// A step from coarse to fine.
-struct Step {
-  int scale;
-  double blur;  ///< [m]
-};
-
-/// Returns two steps per scale of the map, from the coarsest to the finest.
-template <int D>
-std::vector<Step> stepsOf(const GaussianMap<D>& map) {
-  std::vector<Step> steps;
-  for (int scale = map.scales() - 1; scale >= 0; --scale) {
-    if (map.cellCount(scale) == 0) continue;  // possible in a compressed map
-    const double side = map.grid().side(scale);
-    for (const double part : {0.3, 0.1}) steps.push_back({scale, part * side});
-  }
-  return steps;
-}
-
-/// Returns the limits of a step. Before the last step, a hundredth of the blur is accurate enough.
-inline DescentLimits limitsOf(const Step& step, bool last, const RegistrationOptions& options) {
-  const double translation = std::max(options.translation, last ? 0.0 : 0.01 * step.blur);
-  return {options.max_iterations, translation, translation / options.translation * options.rotation};
+/// Returns the limits of a step with this blur [m]. Before the last step, a hundredth of the blur is accurate enough.
+inline DescentLimits limitsOf(double blur, bool last, const RegistrationOptions& options) {
+  const double translation = std::max(options.translation, last ? 0.0 : 0.01 * blur);
+  const double factor = std::isfinite(translation) ? translation / options.translation : 1.0;
+  return {options.max_iterations, translation, factor * options.rotation};
 }
 
 }  // namespace gaussmap::detail

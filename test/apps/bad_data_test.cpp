@@ -3,9 +3,7 @@
 #include <limits>
 
 #include "apps/app_fixture.h"
-#include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/io/pcd/pcd_writer.h"
-#include "gaussmap/mapping/build.h"
 
 namespace gaussmap::test {
 namespace {
@@ -67,8 +65,6 @@ TEST_F(Apps, NameTheMapThatIsDamaged) {
     expectDataError(map + ": ", {"export", map, own("x.pcd")});
   }
   expectDataError(own("flipped.gmap") + ": ", {"hausdorff", own("flipped.gmap"), scene("truth.pcd")});
-  save<2>(own("plane.gmap"), build<2>({{1.0, 2.0}}, {}));
-  expectDataError(own("plane.gmap") + ": ", {"info", own("plane.gmap")});
 }
 
 TEST_F(Apps, TakeNoMapForAScan) {

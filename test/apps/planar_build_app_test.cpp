@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "apps/planar_fixture.h"
+#include "gaussmap/core/gaussian.h"
 #include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/io/scans/file_scans.h"
 #include "gaussmap/mapping/build.h"
@@ -82,7 +83,7 @@ TEST_F(PlanarBuild, ListsTheSweepsOfALogWithPosesAndTimes) {
   ASSERT_EQ(said["scans"].size(), std::size_t{kScans});
   EXPECT_EQ(said["points"]["read"], PlanarRoom::kBeams * kScans);
   EXPECT_EQ(said["points"]["non_finite"], kScans);
-  EXPECT_EQ(said["poses"], "poses of the laser in the log");
+  EXPECT_EQ(said["poses"], "pose of the laser in each line of the log");
   const Json& scan = said["scans"][3];
   EXPECT_EQ(scan["kind"], "CARMEN log");
   EXPECT_EQ(scan["scan"], "scan 3");
@@ -200,6 +201,49 @@ TEST_F(PlanarSlice, OnlineUsesTheNearestPointOfEveryDirection) {
   EXPECT_EQ(info["occupancy"], true);
   EXPECT_GT(info["scales"][0]["weight"], 6 * 300.0);
   EXPECT_LE(info["scales"][0]["weight"], 6 * 720.0);  // beams of half a degree
+}
+
+/// Returns the RMS distance of the mass of the Gaussians of a scale from the walls of a room of 8 m x 6 m.
+template <int D>
+double errorAtTheWalls(const GaussianMap<D>& map, int scale) {
+  double sum = 0.0, weight = 0.0;
+  for (std::size_t i = 0; i < map.gaussianCount(scale); ++i) {
+    const Gaussian<D> one = map.gaussian(i, scale);
+    const double to_x = 4.0 - std::abs(one.mean.x()), to_y = 3.0 - std::abs(one.mean.y());
+    const int axis = std::abs(to_x) < std::abs(to_y) ? 0 : 1;
+    const double distance = axis == 0 ? to_x : to_y;
+    sum += one.weight * (distance * distance + one.cov(axis, axis));
+    weight += one.weight;
+  }
+  return std::sqrt(sum / weight);
+}
+
+TEST_F(PlanarSlice, IsAsAccurateAtTheWallsAsTheMapInSpace) {
+  std::filesystem::create_directories(own("scans"));
+  for (int i = 0; i < 4; ++i) {
+    Random random(static_cast<std::uint64_t>(i));
+    Pose pose;
+    pose.translation = {0.5 * i - 1.0, 0.3, 1.0};
+    std::vector<Vector<3>> points;
+    for (int ring = -8; ring <= 8; ++ring)
+      for (int column = 0; column < 720; ++column) {
+        const double angle = (column + 0.5) * 0.5 * std::acos(-1.0) / 180.0, dx = std::cos(angle), dy = std::sin(angle);
+        const double range = std::min(((dx < 0 ? -4.0 : 4.0) - pose.translation.x()) / dx,
+                                      ((dy < 0 ? -3.0 : 3.0) - pose.translation.y()) / dy);
+        const double noise = 0.02 * (random.uniform() + random.uniform() + random.uniform() - 1.5) * 2.0;
+        const Vector<3> direction(dx, dy, 0.02 * ring);
+        points.emplace_back(direction * (range + noise));
+      }
+    writePcd(own("scans/scan" + std::to_string(i) + ".pcd"), points, PcdPrecision::Double, pose);
+  }
+  const Words more = {"--resolution", "0.2", "--noise", "0.001"};
+  succeed(joined({"pcd2map", "--planar", "--slice", "0.8", "1.2", own("scans"), "-o", own("slice.gmap")}, more));
+  succeed(
+      joined({"pcd2map", own("scans"), "-o", own("space.gmap"), "--crop", "-9", "-9", "0.8", "9", "9", "1.2"}, more));
+  const GaussianMapQuadtree slice = load<2>(own("slice.gmap"));
+  const GaussianMapOctree space = load(own("space.gmap"));
+  ASSERT_EQ(slice.weight(0), space.weight(0));
+  for (int s = 0; s < slice.scales(); ++s) EXPECT_LT(errorAtTheWalls(slice, s), 1.1 * errorAtTheWalls(space, s)) << s;
 }
 
 }  // namespace

@@ -22,12 +22,15 @@ struct RegistrationOptions {
   std::size_t max_gaussians = 4000;
   int max_iterations = 30;  ///< maximum number of iterations per step, >= 1
   double kernel = 3.0;      ///< the robust kernel halves the cost of a residual of this many standard deviations, > 0
-  /// The last step ends when an iteration moves the pose by less than this [m], > 0, and turns it by less than
-  /// `rotation`. Earlier steps can use larger limits: both are multiplied by the same factor.
+  /// The last step ends when an iteration moves the pose by at most this [m], > 0, and turns it by at most `rotation`.
+  /// Infinity: only the other limit counts. Earlier steps can use larger limits: both are multiplied by the same
+  /// factor.
   double translation = 5e-4;
-  double rotation = 5e-5;    ///< limit of the turn, see `translation` [rad], > 0
-  double degenerate = 0.01;  ///< a pose is degenerate if smallest / largest information is at most this, >= 0
-  int threads = 0;           ///< 0 = all cores
+  double rotation = 5e-5;  ///< limit of the turn, see `translation` [rad], > 0
+  /// A direction of the pose is unobservable if the surfaces of the map constrain it at most this many times as well as
+  /// the best direction, >= 0. See RegistrationResult::degenerate.
+  double degenerate = 0.003;
+  int threads = 0;  ///< 0 = all cores
 };
 
 /// The result of registerScan() and registerMap().
@@ -35,15 +38,23 @@ struct GAUSSMAP_API RegistrationResult {
   Pose pose;  ///< scan frame to map frame
   /// Covariance of (x, y, z [m], rotation vector about the sensor [rad]) along the map's axes, from the last iteration.
   /// It is symmetric positive definite, or zero if the map gives no information about the pose.
+  ///
+  /// Along an unobservable direction, the standard deviation is 1 rad for a rotation, and the RMS range of the scan for
+  /// a translation [m]. So the matrix can be inverted, for example as a factor of a pose graph. Along this direction,
+  /// such a factor says nearly nothing, and other sensors decide.
   PoseCovariance covariance = PoseCovariance::Zero();
-  /// The direction in which the pose is least certain: a unit vector of (x, y, z, rotation vector times the RMS range
-  /// of the scan). It is zero if the map gives no information about the pose.
+  /// The direction in which the surfaces of the map constrain the pose least: a unit vector of (x, y, z, rotation
+  /// vector times the RMS range of the scan). It is zero if the map gives no information about the pose.
   PoseDirection least_observable = PoseDirection::Zero();
   double fitness = 0.0;       ///< share of the scan's Gaussians within 3 standard deviations of a map Gaussian
   double mean_squared = 0.0;  ///< mean squared Mahalanobis distance of these Gaussians
   int iterations = 0;         ///< number of iterations of all steps together
-  bool converged = false;     ///< true: the last step ended because the pose no longer moved or improved
-  bool degenerate = true;     ///< some direction is unobservable (along a corridor, on a plain), see `least_observable`
+  /// True: the last step ended because the pose no longer moved or improved. False: it stopped at the limit of
+  /// iterations, or the map gives no information about the pose, and `pose` is the guess.
+  bool converged = false;
+  /// True: some direction is unobservable (along a corridor, on a plain), see `least_observable`. Along all such
+  /// directions, `pose` keeps the guess.
+  bool degenerate = true;
 };
 
 /// Registers a scan to a map: refines the guess of its pose. It uses all scales of the map, from the coarsest to the
@@ -55,6 +66,11 @@ struct GAUSSMAP_API RegistrationResult {
 /// distances under a robust kernel (Geman-McClure), by damped Gauss-Newton iterations. A map Gaussian does not
 /// constrain the pose along directions in which it fills its cell. At the finest scale, a map Gaussian constrains the
 /// pose mainly along its thinnest direction.
+///
+/// At the end, the normals of the surfaces on which the scan lies say which directions of the pose are unobservable. If
+/// there are any, the registration starts again, and the pose keeps the guess along them. The borders of the seen area
+/// and the lines that a lidar draws on a plane do not count as information. If fewer than three Gaussians of the scan
+/// meet the map, or none of them meets a surface, the result is the guess.
 ///
 /// `points` are in the scan frame [m]; non-finite points are ignored. Throws std::invalid_argument if an option is out
 /// of range (the message names it), the map is empty, or the guess has a fault (see poseFault()).
@@ -70,17 +86,14 @@ GAUSSMAP_API RegistrationResult registerMap(const GaussianMap<3>& source, const 
 
 /// Registers a scan to a planar map: refines x, y and the heading of the guess.
 ///
-/// It works like registerScan() in space, in the plane. `points` are in the scan frame [m]; non-finite points are
+/// It works like registerScan() in space, in the plane. One search begins at every scale of the map; the one with the
+/// least cost at the finest scale is the result. `points` are in the scan frame [m]; non-finite points are
 /// ignored. The tilt of the guess (roll and pitch) is applied to them, and then they lose their height; to register a
 /// slice of a scan in space, give only the points of the slice. The pose of the result has exactly the z and the tilt
 /// of the guess: a guess with a rotation about z gives a rotation about z. In the covariance and in
 /// RegistrationResult::least_observable, the rows and columns of z and of the rotations about x and y are zero.
-/// RegistrationResult::degenerate judges only x, y and the heading.
-///
-/// Unobservable directions keep the guess, with a standard deviation of the RMS range of the scan (heading: 1 rad).
-/// They are found from the directions of the walls in the map, at the scale whose Gaussians look most like pieces of
-/// walls. A direction is unobservable if the walls give at most RegistrationOptions::degenerate times the information
-/// of the best direction. `threads` is not used. Throws like registerScan() in space.
+/// RegistrationResult::degenerate judges only x, y and the heading, by the normals of the walls.
+/// RegistrationOptions::threads is not used. Throws like registerScan() in space.
 GAUSSMAP_API RegistrationResult registerScan(const std::vector<Eigen::Vector3d>& points, const GaussianMap<2>& map,
                                              const Pose& guess = {}, const RegistrationOptions& options = {});
 

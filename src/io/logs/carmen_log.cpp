@@ -9,6 +9,7 @@
 
 #include "core/number_text.h"
 #include "core/pi.h"
+#include "io/files/gunzip.h"
 #include "io/files/text.h"
 #include "io/files/text_lines.h"
 
@@ -158,7 +159,10 @@ CarmenLog readCarmenLog(const std::filesystem::path& path) {
   TextLines lines(path);
   CarmenLog log;
   std::string line;
+  std::size_t kept = 0;  // bytes of the lines with scans; lines without scans take no memory
+  const std::size_t most = maxGunzipped(static_cast<std::size_t>(std::filesystem::file_size(path)));
   while (lines.next(line)) {
+    const std::size_t before = log.scans.size();
     try {
       Words words(line);
       const std::string_view kind = words.left() > 0 ? words.word("name") : "";
@@ -167,6 +171,9 @@ CarmenLog readCarmenLog(const std::filesystem::path& path) {
     } catch (const BadLine& bad) {
       note(log, lines.number(), bad.what());
     }
+    if (log.scans.size() > before) kept += line.size();
+    if (kept > most)
+      throw FileError(path, "expands to more than 100 times its size; if that is right, expand it with gunzip first");
   }
   if (!lines.damage().empty()) note(log, lines.number(), lines.damage());
   if (log.scans.empty()) {

@@ -75,7 +75,7 @@ class CarmenScans : public ScanFile {
   std::unique_ptr<ScanReader> open(std::size_t scan) const override {
     return std::make_unique<SweepReader>(log_, scan);
   }
-  std::string poseSource() const override { return "poses of the laser in the log"; }
+  std::string poseSource() const override { return "pose of the laser in each line of the log"; }
   std::size_t memoryOf(std::size_t) const override { return 0; }
   std::vector<std::string> warnings() const override {
     std::vector<std::string> warnings;

@@ -12,6 +12,7 @@
 #include "gaussmap/io/pcd/pcd_writer.h"
 #include "io/files/text.h"
 #include "io/pcd/wide_records.h"
+#include "map/in_space.h"
 
 namespace gaussmap {
 namespace {
@@ -73,6 +74,10 @@ void savePcd(const std::filesystem::path& path, const GaussianMap<3>& map, const
   if (!options.overwrite && std::filesystem::exists(path, error))
     throw FileError(path, "exists already and is not overwritten");
   saveRecordsPcd(path, toRecords(map, options.scale));
+}
+
+void savePcd(const std::filesystem::path& path, const GaussianMap<2>& map, const ExportOptions& options) {
+  savePcd(path, detail::inSpace(map), options);
 }
 
 GaussianRecords loadRecordsPcd(const std::filesystem::path& path) {

@@ -12,6 +12,7 @@
 #include "core/number_text.h"
 #include "gaussmap/io/pcd/map_pcd.h"
 #include "map/child_links.h"
+#include "map/in_space.h"
 #include "map/map_origin.h"
 #include "map/map_scale_builder.h"
 
@@ -115,6 +116,10 @@ GaussianRecords toRecords(const GaussianMap<3>& map, std::optional<int> scale) {
     if (!scale || *scale == s)
       for (std::size_t i = 0; i < map.gaussianCount(s); ++i) all.records.push_back(toRecord(map, i, s, all.origin));
   return all;
+}
+
+GaussianRecords toRecords(const GaussianMap<2>& map, std::optional<int> scale) {
+  return toRecords(inSpace(map), scale);
 }
 
 GaussianMap<3> fromRecords(const GaussianRecords& all) {

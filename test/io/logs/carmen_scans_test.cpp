@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "gaussmap/core/error.h"
 #include "gaussmap/core/scans.h"
 #include "io/files/temporary_directory.h"
 #include "io/logs/gzip.h"
@@ -73,6 +74,19 @@ TEST_F(CarmenScansTest, WarnOfDamagedLines) {
   ASSERT_EQ(warnings.size(), 6u);
   EXPECT_EQ(warnings[0], "line 1 is left out: expected the number of ranges, found 'x'");
   EXPECT_EQ(warnings[5], "3 more lines are left out");
+}
+
+TEST_F(CarmenScansTest, RefuseASmallFileThatWouldFillTheMemory) {
+  std::string text, line = "FLASER 2000";
+  for (int beam = 0; beam < 2000; ++beam) line += " 5";
+  line += " 0 0 0\n";
+  while (text.size() < (std::size_t{40} << 20)) text += line;
+  try {
+    open(test::gzipped(text));
+    FAIL();
+  } catch (const FileError& error) {
+    EXPECT_NE(std::string(error.what()).find("expands to more than 100 times its size"), std::string::npos);
+  }
 }
 
 }  // namespace

@@ -74,4 +74,13 @@ GAUSSMAP_API std::size_t saveVtp(const std::filesystem::path& path, const Gaussi
 GAUSSMAP_API std::size_t saveCsv(const std::filesystem::path& path, const GaussianMap<3>& map,
                                  std::optional<int> scale = std::nullopt);
 
+/// These functions write a planar map like a map in space. All means have z = 0, and the standard deviation across the
+/// plane is MapOptions::noise.
+GAUSSMAP_API std::size_t savePly(const std::filesystem::path& path, const GaussianMap<2>& map,
+                                 const GaussianPlyOptions& options = {});
+GAUSSMAP_API std::size_t saveVtp(const std::filesystem::path& path, const GaussianMap<2>& map,
+                                 std::optional<int> scale = std::nullopt);
+GAUSSMAP_API std::size_t saveCsv(const std::filesystem::path& path, const GaussianMap<2>& map,
+                                 std::optional<int> scale = std::nullopt);
+
 }  // namespace gaussmap

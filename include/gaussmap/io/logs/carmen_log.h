@@ -42,7 +42,8 @@ struct CarmenLog {
 /// only, so that many sweeps have the same time. Lines without a time are accepted.
 ///
 /// Damaged lines are skipped and listed in CarmenLog::faults. If a gzip file is truncated or damaged, all whole lines
-/// before the damage are kept. Throws FileError if the file cannot be read or holds no usable scan.
+/// before the damage are kept. Throws FileError if the file cannot be read or holds no usable scan, or if the lines
+/// with scans are more than 100 times as long as a gzip file (and 16 MiB).
 GAUSSMAP_API CarmenLog readCarmenLog(const std::filesystem::path& path);
 
 /// Returns true if a file name ends in .log, .clf, .log.gz or .clf.gz, in upper or lower case.

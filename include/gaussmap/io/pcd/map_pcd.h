@@ -36,6 +36,10 @@ struct GAUSSMAP_API GaussianRecords {
 /// its order. Throws std::out_of_range if the map does not have the scale.
 GAUSSMAP_API GaussianRecords toRecords(const GaussianMap<3>& map, std::optional<int> scale = std::nullopt);
 
+/// Converts the Gaussians of a planar map to records: all means have z = 0, and the standard deviation across the plane
+/// is MapOptions::noise.
+GAUSSMAP_API GaussianRecords toRecords(const GaussianMap<2>& map, std::optional<int> scale = std::nullopt);
+
 /// Converts records to a map.
 ///
 /// The grid follows from cell sides and scales. The parent of a finer Gaussian is the nearest cluster of the coarser
@@ -62,6 +66,9 @@ struct ExportOptions {
 /// The fields are x y z covariance[6] weight occupancy cell_side scale cell_x cell_y cell_z. Throws FileError if the
 /// file exists and `overwrite` is not set, or if the file cannot be written.
 GAUSSMAP_API void savePcd(const std::filesystem::path& path, const GaussianMap<3>& map,
+                          const ExportOptions& options = {});
+/// Writes a planar map like a map in space, at z = 0. loadPcd() returns a map in space.
+GAUSSMAP_API void savePcd(const std::filesystem::path& path, const GaussianMap<2>& map,
                           const ExportOptions& options = {});
 
 /// Reads a map from a file of savePcd(). Throws FileError if the file is not a cloud of Gaussians.
