@@ -52,9 +52,9 @@ struct GAUSSMAP_API MapMeans {
 /// Searches for neighbours in a cloud, or among the Gaussians of a map. It can be used wherever PCL takes a
 /// pcl::search::Search, for example with pcl::NormalEstimation or pcl::EuclideanClusterExtraction.
 ///
-/// The points are sorted into cells that are divided again and again, as in a map of ratio 2. Sorting takes a fraction
-/// of the time of building a pcl::search::KdTree; the queries take about as long. PointT can be any point type with x,
-/// y, z. `gaussmap_benchmark search` compares both.
+/// The points are sorted into cells that are divided again and again, as in a map of ratio 2. Construction and queries
+/// take about half the time of a pcl::search::KdTree (`gaussmap_benchmark search` compares them). PointT can be any
+/// point type with x, y, z.
 ///
 /// Results are those of a comparison with all points: distances are computed in floats, and ties go to the smaller
 /// index. The neighbours of nearestKSearch() are sorted, and those of radiusSearch() are too unless
