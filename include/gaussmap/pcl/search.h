@@ -88,7 +88,7 @@ class GAUSSMAP_API GaussianMapSearch : public pcl::search::Search<PointT> {
   Accepted setInputCloud(const PointCloudConstPtr& cloud, const IndicesConstPtr& indices = IndicesConstPtr()) override {
     setPoints(cloud, indices);
     gaussians_.clear();
-    if constexpr (!std::is_void_v<Accepted>) return static_cast<bool>(cloud);
+    return static_cast<Accepted>(cloud != nullptr);
   }
 
   /// Sets the Gaussians of a map to search: those of one scale, or of the leaves (see leaves()). The search uses their
