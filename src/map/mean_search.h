@@ -44,7 +44,9 @@ class MeanSearch {
     search<true>(map_.scales() - 1, 0, map_.cellCount(map_.scales() - 1), found);
   }
 
-  static std::uint64_t packId(int scale, std::size_t index) { return std::uint64_t(scale) << 32 | index; }
+  static std::uint64_t packId(int scale, std::size_t index) {
+    return std::uint64_t{static_cast<std::uint32_t>(scale)} << 32 | index;
+  }
   static int scaleOf(std::uint64_t id) { return static_cast<int>(id >> 32); }
   static std::size_t indexOf(std::uint64_t id) { return id & 0xFFFFFFFFu; }
 
@@ -145,8 +147,10 @@ class MeanSearch {
     for (std::size_t cell = first; cell < last;) {
       const CellKey<D>& key = level.keys[cell];
       bool is_inside = true;
-      for (std::size_t axis = 0; axis < D; ++axis)
-        is_inside = is_inside & (low[axis] <= key[axis]) & (key[axis] <= high[axis]);
+      for (std::size_t axis = 0; axis < D; ++axis) {
+        is_inside &= low[axis] <= key[axis];
+        is_inside &= key[axis] <= high[axis];
+      }
       if (is_inside) {
         outside = 0;
         if (isNear(squaredGap(level, key), found)) enter<true>(scale, cell, found);
