@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <optional>
 
 #include "gaussmap/map/gaussian_map.h"
 #include "map/map_means.h"
@@ -23,6 +25,7 @@ class MeanSearch {
     for (int s = 0; s < map.scales(); ++s) {
       Level& level = levels_[static_cast<std::size_t>(s)];
       level.keys = map.scale(s).keys.data();
+      level.per_side = 1.0 / map.grid().side(s);
       level.square_side = map.grid().side(s) * map.grid().side(s);
       level.below = (point / map.grid().side(s)).array() + kSlack;
       level.above = (point / map.grid().side(s)).array() - (1.0 + kSlack);
@@ -32,12 +35,18 @@ class MeanSearch {
   /// Adds the means within `found.limit()` [m] to `found` (see nearest_list.h), near ones first. The limit can shrink
   /// meanwhile. The index of a result is packed by packId().
   template <typename Found>
-  void run(Found& found) const {
-    const int coarsest = map_.scales() - 1;
-    if (map_.cellCount(coarsest) > 0) visit(coarsest, 0, map_.cellCount(coarsest), found);
+  void searchNearFirst(Found& found) const {
+    search<false>(map_.scales() - 1, 0, map_.cellCount(map_.scales() - 1), found);
+  }
+  /// Does the same in the order of the cells. This is faster if the limit is a few cells, or if it cannot shrink.
+  template <typename Found>
+  void searchBox(Found& found) const {
+    search<true>(map_.scales() - 1, 0, map_.cellCount(map_.scales() - 1), found);
   }
 
-  static std::uint64_t packId(int scale, std::size_t index) { return std::uint64_t(scale) << 32 | index; }
+  static std::uint64_t packId(int scale, std::size_t index) {
+    return std::uint64_t{static_cast<std::uint32_t>(scale)} << 32 | index;
+  }
   static int scaleOf(std::uint64_t id) { return static_cast<int>(id >> 32); }
   static std::size_t indexOf(std::uint64_t id) { return id & 0xFFFFFFFFu; }
 
@@ -54,6 +63,7 @@ class MeanSearch {
   struct Level {
     const CellKey<D>* keys;
     double square_side;      // [m^2]
+    double per_side;         // [1/m]
     Vector<D> below, above;  // the point [cells]: a cell k is apart by k - below or above - k
   };
 
@@ -87,7 +97,17 @@ class MeanSearch {
     return square <= found.limit() * found.limit();
   }
 
-  /// Visits the cells of a range that have one parent, or all coarsest cells.
+  /// Searches a range of cells that have one parent, or all coarsest cells.
+  template <bool kBox, typename Found>
+  void search(int scale, std::size_t first, std::size_t last, Found& found) const {
+    if (first == last) return;
+    if constexpr (kBox)
+      visitBox(scale, first, last, found);
+    else
+      visit(scale, first, last, found);
+  }
+
+  /// Visits the cells of a range, the nearest half first.
   template <typename Found>
   void visit(int scale, std::size_t first, std::size_t last, Found& found) const {
     const Level& level = levels_[static_cast<std::size_t>(scale)];
@@ -109,22 +129,91 @@ class MeanSearch {
       for (; place > 0 && square < near[place - 1].square; --place) near[place] = near[place - 1];
       near[place] = {square, cell};
     }
-    for (std::size_t i = 0; i < count && isNear(near[i].square, found); ++i) enter(scale, near[i].cell, found);
+    for (std::size_t i = 0; i < count && isNear(near[i].square, found); ++i) enter<false>(scale, near[i].cell, found);
   }
 
+  /// Visits the cells of a range that are in a box around the point, in key order.
   template <typename Found>
+  void visitBox(int scale, std::size_t first, std::size_t last, Found& found) const {
+    const Level& level = levels_[static_cast<std::size_t>(scale)];
+    const double radius = found.limit() * level.per_side;
+    CellKey<D> low, high;
+    for (std::size_t axis = 0; axis < D; ++axis) {
+      const auto i = static_cast<Eigen::Index>(axis);
+      low[axis] = asIndex(std::ceil(level.above(i) - radius));
+      high[axis] = asIndex(std::floor(level.below(i) + radius));
+    }
+    std::size_t outside = 0;  // cells in a row
+    for (std::size_t cell = first; cell < last;) {
+      const CellKey<D>& key = level.keys[cell];
+      bool is_inside = true;
+      for (std::size_t axis = 0; axis < D; ++axis) {
+        is_inside &= low[axis] <= key[axis];
+        is_inside &= key[axis] <= high[axis];
+      }
+      if (is_inside) {
+        outside = 0;
+        if (isNear(squaredGap(level, key), found)) enter<true>(scale, cell, found);
+      }
+      ++cell;
+      if (is_inside || ++outside < kFew) continue;
+      if (const auto next = nextInBox(key, low, high))
+        cell = jump(level.keys, cell, last, *next);
+      else
+        return;
+      outside = 0;
+    }
+  }
+
+  /// Returns a key above `key`, which is outside the box: no key between them is in the box. Returns std::nullopt if
+  /// the box has no key above `key`.
+  static std::optional<CellKey<D>> nextInBox(const CellKey<D>& key, const CellKey<D>& low, const CellKey<D>& high) {
+    CellKey<D> next = key;
+    std::size_t axis = 0;
+    while (low[axis] <= key[axis] && key[axis] <= high[axis]) ++axis;
+    if (key[axis] > high[axis]) {
+      while (axis > 0 && key[axis - 1] == high[axis - 1]) --axis;
+      if (axis == 0) return std::nullopt;
+      ++next[axis - 1];
+    }
+    for (; axis < D; ++axis) next[axis] = low[axis];
+    return next;
+  }
+
+  /// Returns a whole number as the index of a cell; beyond the range of indices, the last index.
+  static std::int32_t asIndex(double number) {
+    constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min();
+    constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
+    return number <= kLeast ? kLeast : number >= kMost ? kMost : static_cast<std::int32_t>(number);
+  }
+
+  /// Returns the first of the cells `first`, `first` + 1, ... whose key is not below `key`, or `last`.
+  static std::size_t jump(const CellKey<D>* keys, std::size_t first, std::size_t last, const CellKey<D>& key) {
+    std::size_t step = 1, end = first;
+    while (end < last && keys[end] < key) {
+      first = end + 1;
+      end += step;
+      step *= 2;
+    }
+    return std::size_t(std::lower_bound(keys + first, keys + std::min(end, last), key) - keys);
+  }
+
+  template <bool kBox, typename Found>
   void enter(int scale, std::size_t cell, Found& found) const {
     if (scale == scale_ || (scale_ == kLeaves && map_.isLeaf(cell, scale))) return look(scale, cell, found);
     const IndexRange children = map_.childCells(cell, scale);
-    if (!children.empty()) visit(scale - 1, children.first, children.last, found);
+    search<kBox>(scale - 1, children.first, children.last, found);
   }
 
   template <typename Found>
   void look(int scale, std::size_t cell, Found& found) const {
     const Vector<D> local = point_ - map_.grid().centre(map_.scale(scale).keys[cell], scale);
     const IndexRange range = map_.gaussiansOf(cell, scale);
-    for (std::size_t i = range.first; i < range.last; ++i)
-      found.add((localMean<D>(map_, i, scale) - local).norm(), packId(scale, i));
+    for (std::size_t i = range.first; i < range.last; ++i) {
+      const double square = (localMean<D>(map_, i, scale) - local).squaredNorm();
+      constexpr double kRounding = 1e-12;  // the limit is a distance, not its square
+      if (square * (1.0 - kRounding) <= found.limit() * found.limit()) found.add(std::sqrt(square), packId(scale, i));
+    }
   }
 
   const GaussianMap<D>& map_;

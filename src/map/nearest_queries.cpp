@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "gaussmap/map/queries.h"
@@ -11,6 +13,9 @@ using namespace detail;
 
 namespace {
 
+constexpr int kBoxes = 3;        // sizes of the box
+constexpr int kMaxInBox = 1000;  // more neighbours need so many cells that the order of the cells matters
+
 template <int D, typename Entries>
 std::vector<FoundGaussian> resultOf(const Entries& entries) {
   using Search = MeanSearch<D>;
@@ -21,13 +26,31 @@ std::vector<FoundGaussian> resultOf(const Entries& entries) {
   return found;
 }
 
+/// Finds the `k` means that are nearest to a point. `List`: NearestOne or NearestList, which `make(limit)` makes. The
+/// means are usually in the cells around the point. So the search begins with a small box of cells.
+template <int D, typename Make>
+auto searchNearest(const GaussianMap<D>& map, const Vector<D>& point, int k, int scale, const Make& make) {
+  const MeanSearch<D> search(map, point, scale);
+  const double side = map.grid().side(std::max(scale, 0));
+  double radius = side * (0.5 + std::sqrt(0.5 * k));  // on a surface there are about 2 k means within it
+  for (int round = 0; round < kBoxes && k <= kMaxInBox; ++round, radius *= 2.0) {
+    auto list = make(radius);
+    search.searchBox(list);
+    if (list.full()) return list;
+  }
+  auto list = make(kAnyDistance);
+  search.searchNearFirst(list);
+  return list;
+}
+
 template <int D>
 std::vector<FoundGaussian> nearestMeans(const GaussianMap<D>& map, const Vector<D>& point, int k, int scale) {
   checkQuery(map.grid(), point);
   checkCount(k);
   if (k == 0) return {};
-  NearestList<double, std::uint64_t> list(static_cast<std::size_t>(k), kAnyDistance);
-  MeanSearch<D>(map, point, scale).run(list);
+  auto list = searchNearest(map, point, k, scale, [k](double limit) {
+    return NearestList<double, std::uint64_t>(static_cast<std::size_t>(k), limit);
+  });
   return resultOf<D>(list.sort());
 }
 
@@ -36,7 +59,7 @@ std::vector<FoundGaussian> meansWithin(const GaussianMap<D>& map, const Vector<D
   checkQuery(map.grid(), point);
   checkRadius(radius);
   NeighboursWithin<double, std::uint64_t> list(radius);
-  MeanSearch<D>(map, point, scale).run(list);
+  MeanSearch<D>(map, point, scale).searchBox(list);
   return resultOf<D>(list.sort());
 }
 
@@ -47,8 +70,8 @@ std::optional<NearestGaussian<D>> nearest(const GaussianMap<D>& map, const Vecto
   checkScale(map, scale);
   if (map.cellCount(scale) == 0) return std::nullopt;
   checkQuery(map.grid(), point);
-  NearestOne<double, std::uint64_t> one(kAnyDistance);
-  MeanSearch<D>(map, point, scale).run(one);
+  const auto one =
+      searchNearest(map, point, 1, scale, [](double limit) { return NearestOne<double, std::uint64_t>(limit); });
   return NearestGaussian<D>{MeanSearch<D>::indexOf(one.best().index), one.best().distance};
 }
 

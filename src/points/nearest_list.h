@@ -33,7 +33,7 @@ class NearestOne {
     best_ = found;
     return true;
   }
-  bool empty() const { return best_.index == static_cast<Index>(-1); }
+  bool full() const { return best_.index != static_cast<Index>(-1); }
   const Neighbour<Distance, Index>& best() const { return best_; }
 
  private:
@@ -54,17 +54,17 @@ class NearestList {
   bool add(Distance distance, Index index) {
     if (!(distance <= limit_)) return false;
     const Entry entry{distance, index};
-    const bool full = entries_.size() == count_;
+    const bool is_full = full();
     if (count_ <= kFew) {  // kept sorted
-      if (full && !(entry < entries_.back())) return false;
-      if (!full) entries_.push_back(entry);
+      if (is_full && !(entry < entries_.back())) return false;
+      if (!is_full) entries_.push_back(entry);
       std::size_t place = entries_.size() - 1;
       for (; place > 0 && entry < entries_[place - 1]; --place) entries_[place] = entries_[place - 1];
       entries_[place] = entry;
-      if (entries_.size() == count_) limit_ = entries_.back().distance;
+      if (full()) limit_ = entries_.back().distance;
       return true;
     }
-    if (full) {  // a heap
+    if (is_full) {  // a heap
       if (!(entry < entries_.front())) return false;
       std::pop_heap(entries_.begin(), entries_.end());
       entries_.back() = entry;
@@ -72,9 +72,10 @@ class NearestList {
       entries_.push_back(entry);
     }
     std::push_heap(entries_.begin(), entries_.end());
-    if (entries_.size() == count_) limit_ = entries_.front().distance;
+    if (full()) limit_ = entries_.front().distance;
     return true;
   }
+  bool full() const { return entries_.size() == count_; }
   /// Returns all collected neighbours in order.
   const std::vector<Entry>& sort() {
     if (count_ > kFew) std::sort_heap(entries_.begin(), entries_.end());

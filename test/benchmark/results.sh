@@ -21,6 +21,7 @@ as_text() { echo '```text'; cat; echo '```'; }  # plain text in Markdown
 
 if part speed; then
   "$benchmark" table --growth --data "$data" --json "$figures/table.json"
+  "$benchmark" search "$data"/{kitti_6scans,mulran_kaist03_21scans,sim_hall_20scans} >"$figures/search.md"
   formats=$data/kitti_6scans_formats  # written by test/data/formats/same_scans/make.py
   [[ ! -d $formats ]] || "$benchmark" formats "$formats"/{pcd,bin,las,laz,ply}/* "$formats"/scans.{e57,bag} \
     "$formats"/{none,lz4,zstd}.mcap "$formats"/rosbag2/*.db3 | as_text >"$figures/formats.md"

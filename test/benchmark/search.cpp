@@ -229,16 +229,12 @@ class SearchComparison {
  private:
   void print(const std::string& name, const char* what, std::size_t size, const Questions& questions,
              const std::vector<Times>& all) {
-    std::printf("\n%s: %zu %s, %zu queries, radius %.3g m\n\n", name.c_str(), size, what, questions.points.size(),
-                questions.radius);
-    std::printf(
-        "| %-20s | construction [ms] | nearest | 10 nearest | in radius | with construction: nearest | 10 nearest "
-        "| in radius |\n|---|---|---|---|---|---|---|---|\n",
-        "processor time");
+    char input[160];
+    std::snprintf(input, sizeof input, "%s: %zu %s, radius %.2g m", name.c_str(), size, what, questions.radius);
     const Times& flann = all[1];
     for (const Times& times : all) {
       check(times, flann);
-      std::printf("| %-20s | %8.1f | %8.1f | %8.1f | %8.1f | %.2f | %.2f | %.2f |\n", times.name.c_str(),
+      std::printf("| %s | %s | %.1f | %.1f | %.1f | %.1f | %.2f / %.2f / %.2f |\n", input, times.name.c_str(),
                   1e3 * times.build, 1e3 * times.nearest, 1e3 * times.ten, 1e3 * times.within,
                   (times.build + times.nearest) / (flann.build + flann.nearest),
                   (times.build + times.ten) / (flann.build + flann.ten),
@@ -283,7 +279,10 @@ void addSearch(CLI::App& app) {
   command.add_option("--json", given->json, "file for machines");
   command.callback([given] {
     SearchComparison comparison(given->runs, given->queries);
-    std::printf("The last three columns are relative to pcl::search::KdTree; below 1 is faster.\n");
+    std::printf(
+        "| input | search, %zu queries | construction [ms] | nearest [ms] | 10 nearest [ms] | in radius [ms] | with "
+        "construction, relative to KdTree |\n|---|---|---|---|---|---|---|\n",
+        given->queries);
     for (const NamedCloud& cloud : loadClouds(given->paths)) {
       comparison.compareCloud(cloud);
       comparison.compareMap(cloud);

@@ -105,8 +105,8 @@ GAUSSMAP_API std::vector<FoundGaussian> leavesWithin(const GaussianMap<D>& map, 
 
 /// Answers many queries for the means of one scale, or of the leaves, of one map.
 ///
-/// It sorts a copy of the means first, which takes about as long as 1000 to 5000 queries by the functions above. Each
-/// query is then three to five times as fast (`gaussmap_benchmark search`). The map may be changed or deleted
+/// It sorts a copy of the means first, which takes about as long as 1000 to 10,000 queries by the functions above. Each
+/// query is then two to five times as fast (`gaussmap_benchmark search`). The map may be changed or deleted
 /// afterwards. Several threads can search at the same time. Copies are cheap.
 template <int D>
 class GAUSSMAP_API MapSearch {

@@ -52,9 +52,9 @@ struct GAUSSMAP_API MapMeans {
 /// Searches for neighbours in a cloud, or among the Gaussians of a map. It can be used wherever PCL takes a
 /// pcl::search::Search, for example with pcl::NormalEstimation or pcl::EuclideanClusterExtraction.
 ///
-/// The points are sorted into cells that are divided again and again, as in a map of ratio 2. Sorting takes a fraction
-/// of the time of building a pcl::search::KdTree; the queries take about as long. PointT can be any point type with x,
-/// y, z. `gaussmap_benchmark search` compares both.
+/// The points are sorted into cells that are divided again and again, as in a map of ratio 2. Construction and queries
+/// take about half the time of a pcl::search::KdTree (`gaussmap_benchmark search` compares them). PointT can be any
+/// point type with x, y, z.
 ///
 /// Results are those of a comparison with all points: distances are computed in floats, and ties go to the smaller
 /// index. The neighbours of nearestKSearch() are sorted, and those of radiusSearch() are too unless
@@ -88,7 +88,7 @@ class GAUSSMAP_API GaussianMapSearch : public pcl::search::Search<PointT> {
   Accepted setInputCloud(const PointCloudConstPtr& cloud, const IndicesConstPtr& indices = IndicesConstPtr()) override {
     setPoints(cloud, indices);
     gaussians_.clear();
-    if constexpr (!std::is_void_v<Accepted>) return static_cast<bool>(cloud);
+    return static_cast<Accepted>(cloud != nullptr);
   }
 
   /// Sets the Gaussians of a map to search: those of one scale, or of the leaves (see leaves()). The search uses their
