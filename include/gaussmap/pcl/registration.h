@@ -77,10 +77,21 @@ struct GaussianMapRegistrationOptions {
 ///
 /// As with PCL's own classes, non-finite points are ignored, and setIndices() selects points of the source. Errors are
 /// printed, and hasConverged() is then false; final transformation and output are those of the guess.
-/// setMaximumIterations() applies to each step from coarse to fine. setTransformationEpsilon() (a squared length) and
-/// setTransformationRotationEpsilon() (a cosine) apply to the last step; earlier steps can end at larger changes. The
-/// constructor sets all three from the RegistrationOptions; the setters replace these values. PCL's settings of
-/// correspondences have no effect. The kd-tree of the target is built at the first call of getFitnessScore().
+///
+/// The registration works in steps, from coarse to fine, and these settings apply to each step:
+/// - setMaximumIterations(). If the last step reaches this limit, hasConverged() is false, unlike in PCL's classes.
+/// - setTransformationEpsilon() and setTransformationRotationEpsilon(), with the meaning that they have in
+///   pcl::NormalDistributionsTransform. A step ends when the squared length of the last shift [m^2] is at most the
+///   first one, and the cosine of the last turn is at least the second one. If one of the two is 0 or less, only the
+///   other one counts. If both are, a step ends at the limit of iterations, or when the pose no longer improves. Steps
+///   before the last one can end at larger changes.
+///
+/// The constructor sets all three from the RegistrationOptions; the setters replace these values. PCL's settings of
+/// correspondences have no effect. getLastIncrementalTransformation() is the motion from the guess to the result. The
+/// kd-tree of the target is built at the first call of getFitnessScore().
+///
+/// Along unobservable directions the result keeps the guess, see RegistrationResult. If the target gives no information
+/// about the pose, for example because it is a single point, hasConverged() is false.
 template <typename PointSource, typename PointTarget, typename Scalar = float>
 class GAUSSMAP_API GaussianMapRegistration : public pcl::Registration<PointSource, PointTarget, Scalar> {
   using Base = pcl::Registration<PointSource, PointTarget, Scalar>;
@@ -117,8 +128,12 @@ class GAUSSMAP_API GaussianMapRegistration : public pcl::Registration<PointSourc
   /// Sets the number of threads; 0 = all cores.
   void setNumberOfThreads(int threads) { options_.registration.threads = threads; }
 
+  /// Returns the number of iterations of all steps together, as of pcl::NormalDistributionsTransform. It can be larger
+  /// than getMaximumIterations(), which is the limit per step.
+  int getFinalNumIteration() const { return this->nr_iterations_; }
   /// Returns the covariance of the pose: translation x y z [m], then rotation vector about the origin of the source
-  /// [rad], along the axes of the target. Zero does not mean "exact": there is no information about the pose.
+  /// [rad], along the axes of the target. Unobservable directions have a large variance, see RegistrationResult. Zero
+  /// does not mean "exact": there is no information about the pose.
   const PoseCovariance& getPoseCovariance() const { return result_.covariance; }
   /// Returns true if some direction of the pose is unobservable, for example along a corridor, or if there is no
   /// result.

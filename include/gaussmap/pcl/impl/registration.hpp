@@ -6,8 +6,10 @@
 #include <pcl/type_traits.h>
 #include <pcl/impl/pcl_base.hpp>  // required for user-defined point types
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
+#include <limits>
 
 #include "gaussmap/io/pcd/map_pcd.h"
 #include "gaussmap/map/queries.h"
@@ -90,9 +92,15 @@ template <typename PointSource, typename PointTarget, typename Scalar>
 RegistrationOptions GaussianMapRegistration<PointSource, PointTarget, Scalar>::registrationOptions() const {
   RegistrationOptions options = options_.registration;
   options.max_iterations = this->max_iterations_;
-  if (this->transformation_epsilon_ > 0.0) options.translation = std::sqrt(this->transformation_epsilon_);
-  const double cosine = this->transformation_rotation_epsilon_;
-  if (cosine > 0.0 && cosine < 1.0) options.rotation = std::acos(cosine);
+  // As in pcl::NormalDistributionsTransform: a limit of 0 or less is not tested. Without any limit, only a step of
+  // length zero ends the iterations early.
+  const double squared = this->transformation_epsilon_, cosine = this->transformation_rotation_epsilon_;
+  constexpr double kSmallest = std::numeric_limits<double>::min(), kNoLimit = std::numeric_limits<double>::infinity();
+  const bool no_limit = !(squared > 0.0) && !(cosine > 0.0);
+  options.translation = squared > 0.0 ? std::sqrt(squared) : no_limit ? kSmallest : kNoLimit;
+  options.rotation = cosine > 0.0 ? std::max(kSmallest, std::acos(std::min(1.0, cosine)))
+                     : no_limit   ? kSmallest
+                                  : kNoLimit;
   return options;
 }
 
