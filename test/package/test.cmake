@@ -26,6 +26,12 @@ set(common -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=${COMPILER} 
 run(${CMAKE_COMMAND} -S ${SOURCE}/package -B ${WORK}/stranger ${common})
 run(${CMAKE_COMMAND} --build ${WORK}/stranger)
 run(${WORK}/stranger/stranger)
+if(WITH_PCL)
+  run(${CMAKE_COMMAND} -S ${SOURCE}/package/pcl -B ${WORK}/stranger_with_pcl ${common})
+  run(${CMAKE_COMMAND} --build ${WORK}/stranger_with_pcl)
+  run(${WORK}/stranger_with_pcl/pcl_first)
+  run(${WORK}/stranger_with_pcl/gaussmap_first)
+endif()
 
 run(${CMAKE_COMMAND} -S ${SOURCE}/../examples -B ${WORK}/examples ${common} -DWITH_PCL=${WITH_PCL})
 run(${CMAKE_COMMAND} --build ${WORK}/examples)

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// For pcl::PassThrough<PointGaussian>: PCL's rule for point types that are not its own.
-#define PCL_NO_PRECOMPILE
 #include "gaussmap/pcl/conversions.h"
 
 #include <gtest/gtest.h>
 #include <pcl/filters/passthrough.h>
 #include <pcl/io/pcd_io.h>
+
+#include <cmath>
+#include <limits>
 
 #include "gaussmap/io/pcd/map_pcd.h"
 #include "gaussmap/mapping/refine.h"
@@ -107,6 +108,80 @@ TEST(BuildMap, TakesUsualPointTypesAndAStrangersOwn) {
   EXPECT_EQ(buildMap(rich).scale(0).moments, expected.scale(0).moments);
   EXPECT_EQ(buildMap(own).scale(0).moments, expected.scale(0).moments);
   EXPECT_EQ(expected.weight(2), 2000.0);
+}
+
+Scan anOrganisedScan() {
+  Scan scan;
+  scan.columns = 4;
+  for (int i = 0; i < 12; ++i) scan.points.emplace_back(0.5 * i, -0.25 * i, 1.0);
+  scan.points[5].setConstant(std::numeric_limits<double>::quiet_NaN());
+  scan.pose.translation << 1.5, -2.25, 0.5;
+  scan.pose.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()));
+  scan.time = 1700000000.123457;
+  return scan;
+}
+
+TEST(ScanConversion, KeepsPointsRowsPoseAndTimeBothWays) {
+  const Scan scan = anOrganisedScan();
+  const auto cloud = toPointCloud<pcl::PointXYZI>(scan);
+  EXPECT_EQ(cloud.width, 4u);
+  EXPECT_EQ(cloud.height, 3u);
+  EXPECT_FALSE(cloud.is_dense);
+  EXPECT_EQ(cloud.header.stamp, 1700000000123457u);
+  EXPECT_EQ(cloud.sensor_origin_.head<3>(), Eigen::Vector3f(1.5f, -2.25f, 0.5f));
+  EXPECT_EQ(cloud[2].x, 1.0f);
+  EXPECT_EQ(cloud[2].intensity, pcl::PointXYZI().intensity);
+  const Scan back = toScan(cloud);
+  EXPECT_EQ(back.columns, 4);
+  ASSERT_EQ(back.points.size(), scan.points.size());
+  for (std::size_t i = 0; i < scan.points.size(); ++i) {
+    if (i == 5)
+      EXPECT_TRUE(back.points[i].hasNaN());
+    else
+      EXPECT_EQ(back.points[i], scan.points[i]);  // these numbers are floats
+  }
+  EXPECT_EQ(back.pose.translation, scan.pose.translation);
+  EXPECT_LT(back.pose.rotation.angularDistance(scan.pose.rotation), 1e-6);
+  ASSERT_TRUE(back.time);
+  EXPECT_NEAR(*back.time, *scan.time, 1e-6);
+  EXPECT_EQ(toPointCloud<pcl::PointXYZI>(back).header.stamp, cloud.header.stamp);
+}
+
+TEST(ScanConversion, MakesAListOfAScanWithoutRows) {
+  Scan scan = anOrganisedScan();
+  scan.columns = 0;
+  scan.time.reset();
+  scan.points.erase(scan.points.begin() + 5);
+  const auto cloud = toPointCloud<pcl::PointXYZ>(scan);
+  EXPECT_EQ(cloud.width, 11u);
+  EXPECT_EQ(cloud.height, 1u);
+  EXPECT_TRUE(cloud.is_dense);
+  EXPECT_EQ(cloud.header.stamp, 0u);
+  EXPECT_EQ(toScan(cloud).columns, 0);
+  EXPECT_FALSE(toScan(cloud).time);
+  scan.time = -3.0;  // a stamp cannot be negative
+  EXPECT_EQ(toPointCloud<pcl::PointXYZ>(scan).header.stamp, 0u);
+}
+
+TEST(ScanConversion, RoundsAHundredMetresToFourMicrometres) {
+  Scan scan;
+  Random random(7);
+  for (int i = 0; i < 1000; ++i)
+    scan.points.emplace_back(100.0 * random.uniform(), 100.0 * random.uniform(), 100.0 * random.uniform());
+  const auto cloud = toPointCloud<pcl::PointXYZ>(scan);
+  for (std::size_t i = 0; i < scan.points.size(); ++i)
+    EXPECT_LT((cloud[i].getVector3fMap().cast<double>() - scan.points[i]).cwiseAbs().maxCoeff(), 4e-6);
+}
+
+TEST(ScanConversion, RefusesAFaultyPoseAndABrokenRow) {
+  pcl::PointCloud<pcl::PointXYZ> cloud;
+  cloud.sensor_orientation_ = Eigen::Quaternionf(0, 0, 0, 0);
+  EXPECT_THROW(toScan(cloud), std::invalid_argument);
+  Scan scan = anOrganisedScan();
+  scan.columns = 5;
+  EXPECT_THROW(toPointCloud<pcl::PointXYZ>(scan), std::invalid_argument);
+  EXPECT_TRUE(toPointCloud<pcl::PointXYZ>(Scan()).empty());
+  EXPECT_TRUE(toScan(pcl::PointCloud<pcl::PointXYZ>()).points.empty());
 }
 
 }  // namespace

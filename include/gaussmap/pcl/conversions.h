@@ -3,16 +3,24 @@
 
 #include <pcl/point_cloud.h>
 #include <pcl/range_image/range_image.h>
-#include "gaussmap/core/pose.h"
-#include "gaussmap/sensor/range_image.h"
 
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <optional>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
+#include "gaussmap/core/pose.h"
+#include "gaussmap/core/scans.h"
 #include "gaussmap/map/gaussian_map.h"
 #include "gaussmap/map/moment_grid.h"
 #include "gaussmap/mapping/build.h"
+#include "gaussmap/pcl/impl/sensor_pose.hpp"
 #include "gaussmap/pcl/point_gaussian.h"
+#include "gaussmap/sensor/range_image.h"
 #include "gaussmap/version.h"
 
 namespace gaussmap {
@@ -38,6 +46,53 @@ GaussianMapOctree buildMap(const pcl::PointCloud<PointT>& cloud, const MapOption
   static_assert(sizeof(PointT) % sizeof(float) == 0);
   const PointsView points{cloud.empty() ? nullptr : cloud[0].data, cloud.size(), sizeof(PointT) / sizeof(float)};
   return build<3>(countPoints(Grid<3>(options).options().resolution, points, threads), options);
+}
+
+/// Converts a PCL cloud of any point type with x, y, z to a scan: sensor frame, float to double without loss.
+///
+/// The pose is that in sensor_origin_ and sensor_orientation_, scaled to unit length. NaN points stay, and an organised
+/// cloud keeps its number of columns. The time [s] is header.stamp, which counts microseconds; 0 means unknown. Throws
+/// std::invalid_argument if the pose has a fault (see poseFault()).
+template <typename PointT>
+Scan toScan(const pcl::PointCloud<PointT>& cloud) {
+  Scan scan;
+  scan.pose = detail::sensorPose(cloud);
+  scan.columns = cloud.height > 1 ? static_cast<int>(cloud.width) : 0;
+  if (cloud.header.stamp > 0) scan.time = 1e-6 * static_cast<double>(cloud.header.stamp);
+  scan.points.reserve(cloud.size());
+  for (const PointT& point : cloud) scan.points.push_back(point.getVector3fMap().template cast<double>());
+  return scan;
+}
+
+/// Converts a scan to a PCL cloud of any point type with x, y, z: `toPointCloud<pcl::PointXYZ>(scan)`. All other fields
+/// have the values of a new point.
+///
+/// NaN points stay, and an organised scan stays organised. is_dense says whether all points are finite. header.stamp is
+/// the time, rounded to microseconds; a scan without a time, or with one before 0, gets 0. The points, the position and
+/// the quaternion of the sensor are rounded to floats. For points within 100 m of the sensor, the error is below 4 um.
+/// The position of a sensor far from the origin of the map is less exact: 1 mm at 16 km, 3 cm at 500 km. Keep
+/// Scan::pose beside such a cloud, and pass it to the setSensorPose() of PointCloudMapBuilder or
+/// PointCloudOnlineMapper. Throws std::invalid_argument if the number of points is not a multiple of Scan::columns.
+template <typename PointT>
+pcl::PointCloud<PointT> toPointCloud(const Scan& scan) {
+  const auto columns = static_cast<std::size_t>(scan.columns > 0 ? scan.columns : 0);
+  if (columns > 0 && scan.points.size() % columns != 0)
+    throw std::invalid_argument("the scan has " + std::to_string(scan.points.size()) +
+                                " points, which is not a multiple of its " + std::to_string(columns) + " columns");
+  pcl::PointCloud<PointT> cloud;
+  cloud.resize(scan.points.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    cloud[i].getVector3fMap() = scan.points[i].cast<float>();
+    cloud.is_dense = cloud.is_dense && cloud[i].getVector3fMap().allFinite();
+  }
+  if (columns > 0) {
+    cloud.width = static_cast<std::uint32_t>(columns);
+    cloud.height = static_cast<std::uint32_t>(scan.points.size() / columns);
+  }
+  cloud.sensor_origin_.template head<3>() = scan.pose.translation.cast<float>();
+  cloud.sensor_orientation_ = Eigen::Quaterniond(scan.pose.rotation).cast<float>();
+  if (scan.time && *scan.time > 0.0) cloud.header.stamp = static_cast<std::uint64_t>(std::llround(1e6 * *scan.time));
+  return cloud;
 }
 
 /// Converts a range image to PCL's range image. A pixel gets its nearest range. `sensor` is the pose of the sensor:

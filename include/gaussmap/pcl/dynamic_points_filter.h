@@ -8,34 +8,38 @@
 #include <pcl/filters/impl/filter_indices.hpp>
 #include <pcl/impl/pcl_base.hpp>  // required for user-defined point types
 
+#include <exception>
 #include <memory>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "gaussmap/core/pose.h"
-#include "gaussmap/map/queries.h"
-#include "gaussmap/mapping/build.h"
+#include "gaussmap/core/scans.h"
+#include "gaussmap/map/gaussian_map.h"
+#include "gaussmap/mapping/moving/moving_points.h"
+#include "gaussmap/pcl/impl/sensor_pose.hpp"
 #include "gaussmap/version.h"
 
 namespace gaussmap {
 
-/// What happens to points where the map has no cell.
-enum class UnknownSpace {
-  Keep,   ///< the points are kept, because nothing is known about the place
-  Remove  ///< the points are removed: in an up-to-date map, a place without a cell is free
-};
-
 /// Options of DynamicPointsFilter.
 struct DynamicPointsFilterOptions {
   /// Frame of the points. ScanFrame::Sensor: sensor_origin_ and sensor_orientation_ transform them into the map frame.
+  /// ScanFrame::Map: the points are in the map frame, and sensor_origin_ is used only by UnknownSpace::Automatic.
   ScanFrame frame = ScanFrame::Sensor;
-  float threshold = 0.0f;                     ///< a place is free if its log-odds of occupancy are below this value
-  UnknownSpace unknown = UnknownSpace::Keep;  ///< what happens to points where the map has no cell
+  float threshold = 0.0f;  ///< a place is free if its log-odds of occupancy are below this value
+  UnknownSpace unknown = UnknownSpace::Automatic;  ///< what happens to points where the map has no cell
+  VisibilityOptions visibility;                    ///< limits of UnknownSpace::Automatic [m]
+  int threads = 0;                                 ///< 0 = all cores
 };
 
-/// Removes the points of moving objects. These are the points at places that a map marks as free by its occupancy.
+/// Removes the points of moving objects. These are the points at places that a map shows to be free, see freePoints().
 ///
-/// Only a map of OnlineMapper has occupancy. A cell of a map of build() is never free, unless `threshold` is above 10.
+/// A map of OnlineMapper forgets moving objects, so their places have no cell. By default, such a point is removed if
+/// the map has a surface clearly behind it, as seen from the sensor. Other points without a cell are kept: the map may
+/// not have seen their places. A cell of a map of build() is never free, unless `threshold` is above 10.
+///
 /// Indices, setNegative(), removed indices, setKeepOrganized() and setUserFilterValue() work as in pcl::PassThrough.
 /// Non-finite points are always removed. Any point type with x, y, z can be used. Without a map, or if the pose is not
 /// valid, the filter prints an error and returns no points.
@@ -52,8 +56,16 @@ class GAUSSMAP_API DynamicPointsFilter : public pcl::FilterIndices<PointT> {
     this->filter_name_ = "DynamicPointsFilter";
   }
 
-  /// Sets the map. Its occupancy decides which places are free.
-  void setMap(MapConstPtr map) { map_ = std::move(map); }
+  /// Sets the map. Prints a warning if the map has no occupancy. Its cells are then never free: it still contains all
+  /// moving objects of its scans, unless they were removed from the scans before.
+  void setMap(MapConstPtr map) {
+    map_ = std::move(map);
+    if (map_ && !map_->empty() && !map_->hasOccupancy())
+      PCL_WARN(
+          "[gaussmap::%s::setMap] the map has no occupancy, so no point in its cells is removed: make it with "
+          "OnlineMapper or 'gaussmap pcd2map --online'\n",
+          this->getClassName().c_str());
+  }
   /// Returns the map.
   const MapConstPtr& getMap() const { return map_; }
   /// Sets the frame of the points, see DynamicPointsFilterOptions.
@@ -62,6 +74,8 @@ class GAUSSMAP_API DynamicPointsFilter : public pcl::FilterIndices<PointT> {
   void setThreshold(float log_odds) { options_.threshold = log_odds; }
   /// Sets what happens to points where the map has no cell.
   void setUnknownSpace(UnknownSpace unknown) { options_.unknown = unknown; }
+  /// Sets the number of threads; 0 = all cores.
+  void setNumberOfThreads(int threads) { options_.threads = threads; }
   /// Returns the options.
   const DynamicPointsFilterOptions& options() const { return options_; }
 
@@ -71,23 +85,12 @@ class GAUSSMAP_API DynamicPointsFilter : public pcl::FilterIndices<PointT> {
   void applyFilter(pcl::Indices& indices) override {
     indices.clear();
     this->removed_indices_->clear();
-    Pose pose;
-    bool usable = map_ != nullptr;
-    if (!usable) PCL_ERROR("[gaussmap::%s::filter] no map: call setMap()\n", this->getClassName().c_str());
-    if (options_.frame == ScanFrame::Sensor) {
-      pose.translation = this->input_->sensor_origin_.template head<3>().template cast<double>();
-      pose.rotation = this->input_->sensor_orientation_.template cast<double>();
-      if (const std::string fault = poseFault(pose); !fault.empty()) {
-        PCL_ERROR("[gaussmap::%s::filter] %s\n", this->getClassName().c_str(), fault.c_str());
-        usable = false;
-      } else {
-        pose = normalised(pose);
-      }
-    }
-    const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
-    for (const auto index : *this->indices_) {
-      const Vector<3> point = (*this->input_)[static_cast<std::size_t>(index)].getVector3fMap().template cast<double>();
-      if (usable && point.allFinite() && isFree(rotation * point + pose.translation) == this->negative_)
+    std::vector<bool> free;
+    const bool usable = findFree(free);
+    for (std::size_t i = 0; i < this->indices_->size(); ++i) {
+      const auto index = (*this->indices_)[i];
+      const bool finite = (*this->input_)[static_cast<std::size_t>(index)].getVector3fMap().allFinite();
+      if (usable && finite && free[i] == this->negative_)
         indices.push_back(index);
       else if (this->extract_removed_indices_)
         this->removed_indices_->push_back(index);
@@ -95,9 +98,31 @@ class GAUSSMAP_API DynamicPointsFilter : public pcl::FilterIndices<PointT> {
   }
 
  private:
-  bool isFree(const Vector<3>& point) const {
-    const auto log_odds = logOddsAt<3>(*map_, point);
-    return log_odds ? *log_odds < options_.threshold : options_.unknown == UnknownSpace::Remove;
+  /// Sets one flag per selected point. Prints an error and returns false if there is no map or no valid pose.
+  bool findFree(std::vector<bool>& free) const {
+    try {
+      if (!map_) throw std::invalid_argument("no map: call setMap()");
+      Pose pose;
+      pose.translation = this->input_->sensor_origin_.template head<3>().template cast<double>();
+      const Eigen::Vector3d sensor = pose.translation;
+      if (options_.frame == ScanFrame::Map)
+        pose = Pose();
+      else
+        pose = detail::sensorPose(*this->input_);
+      const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
+      std::vector<Eigen::Vector3d> points;
+      points.reserve(this->indices_->size());
+      for (const auto index : *this->indices_) {
+        const auto& point = (*this->input_)[static_cast<std::size_t>(index)];
+        points.push_back(rotation * point.getVector3fMap().template cast<double>() + pose.translation);
+      }
+      free = freePoints(*map_, points, sensor,
+                        {options_.threshold, options_.unknown, options_.visibility, options_.threads});
+      return true;
+    } catch (const std::exception& error) {
+      PCL_ERROR("[gaussmap::%s::filter] %s\n", this->getClassName().c_str(), error.what());
+      return false;
+    }
   }
 
   DynamicPointsFilterOptions options_;

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// header only
 #pragma once
 
 #include <pcl/memory.h>
 #include <pcl/pcl_macros.h>
+#include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 #include <pcl/register_point_struct.h>
 
+#include <Eigen/Core>
 #include <cstdint>
+#include <iosfwd>
+
+#include "gaussmap/version.h"
 
 namespace gaussmap {
 
@@ -16,8 +20,9 @@ namespace gaussmap {
 #pragma GCC diagnostic ignored "-Wpedantic"
 
 /// One Gaussian of a map as a PCL point. x y z is the mean, so any PCL tool can show and filter the cloud. The fields
-/// are those of the PCD files of savePcd(). The PCL libraries do not contain PCL's templates, such as pcl::PassThrough,
-/// for this type. To use them with it, define PCL_NO_PRECOMPILE before the first PCL header.
+/// are those of the PCD files of savePcd(). The library gaussmap::pcl contains the common class templates of PCL for
+/// this type: the search classes, the octrees, and most filters (docs/pcl.md lists them). For other templates of PCL,
+/// define PCL_NO_PRECOMPILE before the first PCL header, as for any own point type.
 struct EIGEN_ALIGN16 PointGaussian {
   PCL_ADD_POINT4D;      ///< mean [m]
   float covariance[6];  ///< xx xy xz yy yz zz [m^2]
@@ -33,7 +38,19 @@ struct EIGEN_ALIGN16 PointGaussian {
 
 #pragma GCC diagnostic pop
 
+/// Writes the fields of a point in one line, as PCL does for its own point types.
+GAUSSMAP_API std::ostream& operator<<(std::ostream& out, const PointGaussian& point);
+
+namespace detail {
+
+/// Transforms the Gaussians of a cloud in place. See transformPointCloud().
+GAUSSMAP_API void transformGaussians(const Eigen::Matrix4d& transform, bool copy_all_fields,
+                                     pcl::PointCloud<PointGaussian>& cloud);
+
+}  // namespace detail
 }  // namespace gaussmap
+
+#include "gaussmap/pcl/impl/transform_gaussians.hpp"
 
 POINT_CLOUD_REGISTER_POINT_STRUCT(
     gaussmap::PointGaussian,

@@ -128,4 +128,37 @@ class GAUSSMAP_API MovingPoints {
   std::unique_ptr<State> state_;
 };
 
+/// What is assumed of places where a map has no cell.
+enum class UnknownSpace {
+  Automatic,  ///< free if the map has a surface behind the place, as seen from the sensor; otherwise occupied
+  Keep,       ///< occupied: points there are kept
+  Remove      ///< free: points there are removed, also at places that no scan has seen
+};
+
+/// Options of freePoints().
+struct FreePointOptions {
+  float threshold = 0.0f;  ///< a place is free if its log-odds of occupancy are below this value
+  UnknownSpace unknown = UnknownSpace::Automatic;  ///< what is assumed of places without a cell
+  VisibilityOptions visibility;                    ///< limits of UnknownSpace::Automatic [m]
+  int threads = 0;                                 ///< 0 = all cores
+};
+
+/// Returns one flag per point of a scan: true if a map shows that its place is free. Something at a free place moves.
+///
+/// `points` [m, map frame] are the points of the scan, and `sensor` [m, map frame] is the position of its sensor.
+/// Points that are not finite get false. A place where the map has a cell is free if its log-odds are below
+/// FreePointOptions::threshold. A map of OnlineMapper has no cells where it has forgotten an object, so most free
+/// places have no cell. With UnknownSpace::Automatic, such a place is decided in two steps:
+/// - The means of the leaves are drawn into a range image with pixels of 1 degree, as seen from `sensor`. A place is
+///   free if this image passes through it (see visibilityOf()): the nearest surfaces of the map in this direction lie
+///   clearly behind the place. The scans of the map have seen these surfaces through the place, if their sensors were
+///   near `sensor`.
+/// - A place without a cell is also free if it is connected to a free place by other points without cells, over at
+///   most four cubes of 0.2 m. Such points are the edges and the feet of an object.
+///
+/// A static object that the map has not seen is therefore kept, unless it stands before a surface that the map has.
+/// Throws std::invalid_argument if UnknownSpace::Automatic needs the position of the sensor and it is not finite.
+GAUSSMAP_API std::vector<bool> freePoints(const GaussianMap<3>& map, const std::vector<Eigen::Vector3d>& points,
+                                          const Eigen::Vector3d& sensor, const FreePointOptions& options = {});
+
 }  // namespace gaussmap

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <pcl/PointIndices.h>
+#include <pcl/point_cloud.h>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <type_traits>
+
+#include "gaussmap/pcl/point_gaussian.h"
+
+// Overloads of pcl::transformPointCloud() for clouds of Gaussians, with the parameters that PCL's templates have. Where
+// PCL has a template for any Scalar and one for floats, there must be both here: the one for floats also takes
+// expressions, such as matrix.inverse().
+namespace gaussmap {
+namespace detail {
+
+/// void, or no type at all if Scalar is not a number, as in pcl::transformPointCloud<PointGaussian>(...).
+template <typename Scalar>
+using IfFloatingPoint = std::enable_if_t<std::is_floating_point_v<Scalar>>;
+
+}  // namespace detail
+
+/// Transforms a cloud of Gaussians: the mean becomes A m + t, and the covariance becomes A C A^T, where A is the 3 x 3
+/// part of `transform` and t is its translation.
+///
+/// These overloads are chosen instead of PCL's templates, also for calls as pcl::transformPointCloud(). PCL's templates
+/// would move the means and leave the covariances as they are. As with PCL, `in` and `out` can be the same cloud,
+/// sensor_origin_ and sensor_orientation_ stay as they are, and without `copy_all_fields` the fields other than mean
+/// and covariance are those of a new point. The keys of the cells stay too, but the Gaussians no longer lie in these
+/// cells: to move a map, use transform(), which sorts the Gaussians into new cells.
+template <typename Scalar>
+detail::IfFloatingPoint<Scalar> transformPointCloud(const pcl::PointCloud<PointGaussian>& in,
+                                                    pcl::PointCloud<PointGaussian>& out,
+                                                    const Eigen::Matrix<Scalar, 4, 4>& transform,
+                                                    bool copy_all_fields = true) {
+  if (&in != &out) out = in;
+  detail::transformGaussians(transform.template cast<double>(), copy_all_fields, out);
+}
+/// Transforms a cloud of Gaussians by floats.
+inline void transformPointCloud(const pcl::PointCloud<PointGaussian>& in, pcl::PointCloud<PointGaussian>& out,
+                                const Eigen::Matrix4f& transform, bool copy_all_fields = true) {
+  transformPointCloud<float>(in, out, transform, copy_all_fields);
+}
+/// Transforms a cloud of Gaussians by an affine transform.
+template <typename Scalar>
+detail::IfFloatingPoint<Scalar> transformPointCloud(const pcl::PointCloud<PointGaussian>& in,
+                                                    pcl::PointCloud<PointGaussian>& out,
+                                                    const Eigen::Transform<Scalar, 3, Eigen::Affine>& transform,
+                                                    bool copy_all_fields = true) {
+  transformPointCloud<Scalar>(in, out, transform.matrix(), copy_all_fields);
+}
+/// Transforms a cloud of Gaussians by an affine transform of floats.
+inline void transformPointCloud(const pcl::PointCloud<PointGaussian>& in, pcl::PointCloud<PointGaussian>& out,
+                                const Eigen::Affine3f& transform, bool copy_all_fields = true) {
+  transformPointCloud<float>(in, out, transform.matrix(), copy_all_fields);
+}
+/// Transforms a cloud of Gaussians by a rotation and then a translation.
+template <typename Scalar>
+detail::IfFloatingPoint<Scalar> transformPointCloud(const pcl::PointCloud<PointGaussian>& in,
+                                                    pcl::PointCloud<PointGaussian>& out,
+                                                    const Eigen::Matrix<Scalar, 3, 1>& offset,
+                                                    const Eigen::Quaternion<Scalar>& rotation,
+                                                    bool copy_all_fields = true) {
+  const Eigen::Transform<Scalar, 3, Eigen::Affine> transform(Eigen::Translation<Scalar, 3>(offset) * rotation);
+  transformPointCloud<Scalar>(in, out, transform.matrix(), copy_all_fields);
+}
+/// Transforms a cloud of Gaussians by a rotation and then a translation of floats.
+inline void transformPointCloud(const pcl::PointCloud<PointGaussian>& in, pcl::PointCloud<PointGaussian>& out,
+                                const Eigen::Vector3f& offset, const Eigen::Quaternionf& rotation,
+                                bool copy_all_fields = true) {
+  transformPointCloud<float>(in, out, offset, rotation, copy_all_fields);
+}
+
+/// Transforms some Gaussians of a cloud. `out` gets only these.
+template <typename Scalar>
+detail::IfFloatingPoint<Scalar> transformPointCloud(const pcl::PointCloud<PointGaussian>& in,
+                                                    const pcl::Indices& indices, pcl::PointCloud<PointGaussian>& out,
+                                                    const Eigen::Matrix<Scalar, 4, 4>& transform,
+                                                    bool copy_all_fields = true) {
+  out = pcl::PointCloud<PointGaussian>(in, indices);
+  detail::transformGaussians(transform.template cast<double>(), copy_all_fields, out);
+}
+/// Transforms some Gaussians of a cloud by floats.
+inline void transformPointCloud(const pcl::PointCloud<PointGaussian>& in, const pcl::Indices& indices,
+                                pcl::PointCloud<PointGaussian>& out, const Eigen::Matrix4f& transform,
+                                bool copy_all_fields = true) {
+  transformPointCloud<float>(in, indices, out, transform, copy_all_fields);
+}
+/// Transforms some Gaussians of a cloud by an affine transform.
+template <typename Scalar>
+detail::IfFloatingPoint<Scalar> transformPointCloud(const pcl::PointCloud<PointGaussian>& in,
+                                                    const pcl::Indices& indices, pcl::PointCloud<PointGaussian>& out,
+                                                    const Eigen::Transform<Scalar, 3, Eigen::Affine>& transform,
+                                                    bool copy_all_fields = true) {
+  transformPointCloud<Scalar>(in, indices, out, transform.matrix(), copy_all_fields);
+}
+/// Transforms some Gaussians of a cloud by an affine transform of floats.
+inline void transformPointCloud(const pcl::PointCloud<PointGaussian>& in, const pcl::Indices& indices,
+                                pcl::PointCloud<PointGaussian>& out, const Eigen::Affine3f& transform,
+                                bool copy_all_fields = true) {
+  transformPointCloud<float>(in, indices, out, transform.matrix(), copy_all_fields);
+}
+/// Transforms some Gaussians of a cloud.
+template <typename Scalar>
+detail::IfFloatingPoint<Scalar> transformPointCloud(const pcl::PointCloud<PointGaussian>& in,
+                                                    const pcl::PointIndices& indices,
+                                                    pcl::PointCloud<PointGaussian>& out,
+                                                    const Eigen::Matrix<Scalar, 4, 4>& transform,
+                                                    bool copy_all_fields = true) {
+  transformPointCloud<Scalar>(in, indices.indices, out, transform, copy_all_fields);
+}
+/// Transforms some Gaussians of a cloud by floats.
+inline void transformPointCloud(const pcl::PointCloud<PointGaussian>& in, const pcl::PointIndices& indices,
+                                pcl::PointCloud<PointGaussian>& out, const Eigen::Matrix4f& transform,
+                                bool copy_all_fields = true) {
+  transformPointCloud<float>(in, indices.indices, out, transform, copy_all_fields);
+}
+/// Transforms some Gaussians of a cloud by an affine transform.
+template <typename Scalar>
+detail::IfFloatingPoint<Scalar> transformPointCloud(const pcl::PointCloud<PointGaussian>& in,
+                                                    const pcl::PointIndices& indices,
+                                                    pcl::PointCloud<PointGaussian>& out,
+                                                    const Eigen::Transform<Scalar, 3, Eigen::Affine>& transform,
+                                                    bool copy_all_fields = true) {
+  transformPointCloud<Scalar>(in, indices.indices, out, transform.matrix(), copy_all_fields);
+}
+/// Transforms some Gaussians of a cloud by an affine transform of floats.
+inline void transformPointCloud(const pcl::PointCloud<PointGaussian>& in, const pcl::PointIndices& indices,
+                                pcl::PointCloud<PointGaussian>& out, const Eigen::Affine3f& transform,
+                                bool copy_all_fields = true) {
+  transformPointCloud<float>(in, indices.indices, out, transform.matrix(), copy_all_fields);
+}
+
+}  // namespace gaussmap
+
+namespace pcl {
+using gaussmap::transformPointCloud;  // for calls as pcl::transformPointCloud()
+}  // namespace pcl
