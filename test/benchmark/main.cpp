@@ -31,6 +31,7 @@ int main(int argc, char** argv) try {
   addWideScans(app);
   addBoxLoad(app);
   addPoseCheck(app);
+  addPlanar(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -25,5 +25,6 @@ void addReference(CLI::App& app);
 void addWideScans(CLI::App& app);
 void addBoxLoad(CLI::App& app);
 void addPoseCheck(CLI::App& app);
+void addPlanar(CLI::App& app);
 
 }  // namespace gaussmap::benchmark
