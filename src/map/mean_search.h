@@ -45,15 +45,16 @@ class MeanSearch {
   }
 
   static std::uint64_t packId(int scale, std::size_t index) {
-    return std::uint64_t{static_cast<std::uint32_t>(scale)} << 32 | index;
+    return static_cast<std::uint64_t>(scale) * kIndices + index;
   }
-  static int scaleOf(std::uint64_t id) { return static_cast<int>(id >> 32); }
-  static std::size_t indexOf(std::uint64_t id) { return id & 0xFFFFFFFFu; }
+  static int scaleOf(std::uint64_t id) { return static_cast<int>(id / kIndices); }
+  static std::size_t indexOf(std::uint64_t id) { return id % kIndices; }
 
  private:
-  static constexpr std::size_t kFew = 8;         // cells that are compared one by one
-  static constexpr double kSlack = 2e-3;         // [cells]; a mean can lie 1e-3 outside its cell
-  static constexpr std::size_t kMaxScales = 31;  // see Grid
+  static constexpr std::uint64_t kIndices = 1ull << 32;  // a Gaussian's index has 32 bits
+  static constexpr std::size_t kFew = 8;                 // cells that are compared one by one
+  static constexpr double kSlack = 2e-3;                 // [cells]; a mean can lie 1e-3 outside its cell
+  static constexpr std::size_t kMaxScales = 31;          // see Grid
 
   struct Near {
     double square;
