@@ -31,6 +31,22 @@ function(gaussmap_fast_build target)
   endforeach()
 endfunction()
 
+# gaussmap_define_alignment(TARGET): defines GAUSSMAP_PCL_EIGEN_ALIGNMENT, Eigen's alignment with the flags of this build,
+# for the target and its users. version.h compares it with the alignment that a program has.
+function(gaussmap_define_alignment target)
+  set(source ${PROJECT_BINARY_DIR}/eigen_alignment.cpp)
+  file(WRITE ${source} "#include <Eigen/Core>\nalignment EIGEN_MAX_ALIGN_BYTES\n")
+  string(TOUPPER "${CMAKE_BUILD_TYPE}" config)
+  separate_arguments(flags UNIX_COMMAND "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${config}}")
+  get_target_property(folders Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
+  list(TRANSFORM folders PREPEND -I)
+  execute_process(COMMAND ${CMAKE_CXX_COMPILER} ${flags} ${folders} -E -P ${source} OUTPUT_VARIABLE output ERROR_VARIABLE error)
+  if(NOT output MATCHES "alignment ([0-9]+)")
+    message(FATAL_ERROR "cannot find out EIGEN_MAX_ALIGN_BYTES: ${error}")
+  endif()
+  target_compile_definitions(${target} PUBLIC GAUSSMAP_PCL_EIGEN_ALIGNMENT=${CMAKE_MATCH_1})
+endfunction()
+
 # gaussmap_add_library(NAME [STATIC] FOLDERS folder...): adds the library gaussmap_NAME (alias gaussmap::NAME) with the
 # sources of src/FOLDER.
 function(gaussmap_add_library name)

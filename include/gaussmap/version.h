@@ -1,6 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Compilers go on after #error, and report hundreds of errors with an older C++. They stop at a missing file.
+#if __cplusplus < 201703L
+#include "gaussmap needs C++17: compile with -std=c++17 or later"
+#endif
+
+// With the flag -mavx or -march=native, Eigen aligns its types more strictly. PCL's classes then have another layout
+// than in the library, and a program would crash. The target gaussmap::pcl defines the alignment of the library.
+#ifdef GAUSSMAP_PCL_EIGEN_ALIGNMENT
+#include <Eigen/Core>
+#if EIGEN_MAX_ALIGN_BYTES != GAUSSMAP_PCL_EIGEN_ALIGNMENT
+#define GAUSSMAP_TEXT_OF(value) #value
+#define GAUSSMAP_VALUE_OF(value) GAUSSMAP_TEXT_OF(value)
+static_assert(EIGEN_MAX_ALIGN_BYTES == GAUSSMAP_PCL_EIGEN_ALIGNMENT,
+              "gaussmap::pcl was built with EIGEN_MAX_ALIGN_BYTES = " GAUSSMAP_VALUE_OF(GAUSSMAP_PCL_EIGEN_ALIGNMENT)
+              ", but the flags of this program (-march=native, -mavx) change it. Compile with "
+              "-DEIGEN_MAX_ALIGN_BYTES=" GAUSSMAP_VALUE_OF(GAUSSMAP_PCL_EIGEN_ALIGNMENT) ", or without these flags.");
+#endif
+#endif
+
 /// The version of the library as text. CMake and the commands read the version from this file.
 #define GAUSSMAP_VERSION "0.2.0"
 /// The first number of the version.
