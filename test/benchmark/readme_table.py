@@ -157,19 +157,22 @@ def summary(inputs, _):
 
 
 def filters(inputs, _):
-    """The program measures by cloud and number of points: VoxelGrid, UniformSampling, GaussianMapFilter with as many
-    points (means, samples), GridMinimum, GaussianMapFilter with as many points as GridMinimum."""
-    def cell(row, count=False):
+    """The program measures by cloud and number of points: VoxelGrid, UniformSampling, GridMinimum, GaussianMapFilter
+    with as many points as VoxelGrid (means, samples, split), GaussianMapFilter with as many points as GridMinimum."""
+    def cell(row, count=False, ratio=False):
         text = f"{row['input_to_kept_95']:.3g} / {row['input_to_kept_mean']:.3g}, {time_of(row['seconds'])}"
+        if ratio:
+            text += f", {row['times_voxel_grid']:.2g} x"
         return text + (f" ({row['kept']} points)" if count else "")
     rows = inputs.filters
     lines = []
     for i in range(0, len(rows) - 6, 7):
-        voxels, uniform, ours, _, minimum, ours_again = rows[i:i + 6]
-        lines.append([f"{ours['cloud']}, {ours['kept']} points", cell(ours), cell(voxels), cell(uniform),
-                      cell(minimum, True), cell(ours_again)])
+        voxels, uniform, minimum, ours, _, split, ours_again = rows[i:i + 7]
+        lines.append([f"{ours['cloud']}, {ours['kept']} points", cell(ours, ratio=True), cell(voxels), cell(uniform),
+                      cell(minimum, True), cell(ours_again), cell(split, ratio=True)])
     return table(["95 % / mean [m], time", "`GaussianMapFilter`", "`pcl::VoxelGrid`", "`pcl::UniformSampling`",
-                  "`pcl::GridMinimum`", "`GaussianMapFilter` with as many points as `pcl::GridMinimum`"], lines)
+                  "`pcl::GridMinimum`", "`GaussianMapFilter` with as many points as `pcl::GridMinimum`",
+                  "`GaussianMapFilter`, `Split`"], lines)
 
 
 def text_of(inputs, parts):

@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numeric>
+#include <string>
 
 #include "pcl/random_surface.h"
 #include "points/nearest_distances.h"
@@ -37,7 +39,13 @@ pcl::PointCloud<PointT> filtered(GaussianMapFilter<PointT>& filter,
 }
 
 TEST(GaussianMapFilter, IsNearerToTheInputThanPclsFiltersWithAsManyPoints) {
-  const auto cloud = wavyFloor<pcl::PointXYZ>(200, 150);
+  auto cloud = wavyFloor<pcl::PointXYZ>(200, 150);
+  Random random(3);
+  for (auto& point : *cloud) {  // not on a lattice, and no layer of cells is parallel to the floor
+    point.x = 20.0f * static_cast<float>(random.uniform());
+    point.y = 15.0f * static_cast<float>(random.uniform());
+    point.z = 0.4f * point.x + 0.2f * point.y + 0.3f * std::sin(point.x);
+  }
   const auto errors = [&](const pcl::PointCloud<pcl::PointXYZ>& kept) {
     std::vector<double> distances = nearestDistances(positions(*cloud), positions(kept));
     std::sort(distances.begin(), distances.end());
@@ -240,6 +248,97 @@ TEST(GaussianMapFilter, PrintsAnErrorForOptionsThatAreNone) {
   GaussianMapFilter<pcl::PointXYZ> filter;
   filter.setBudget(0);
   EXPECT_TRUE(filtered<pcl::PointXYZ>(filter, wavyFloor<pcl::PointXYZ>()).empty());
+}
+
+TEST(GaussianMapFilter, KeepsAnErrorThatNeedsMorePointsThanTheDefaultBudget) {
+  const auto cloud = wavyFloor<pcl::PointXYZ>(200, 150);
+  for (const FilterMethod method : {FilterMethod::Map, FilterMethod::Split}) {
+    GaussianMapFilter<pcl::PointXYZ> filter;
+    filter.setMethod(method);
+    filter.setMaxError(0.05);
+    testing::internal::CaptureStderr();
+    const auto kept = filtered<pcl::PointXYZ>(filter, cloud);
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+    EXPECT_GT(kept.size(), 10000u);
+    EXPECT_LE(filter.error(), 0.05);
+    filter.setBudget(500);  // now this limit wins, and the filter says so
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(filtered<pcl::PointXYZ>(filter, cloud).size(), 500u);
+    EXPECT_NE(testing::internal::GetCapturedStderr().find("raise the budget"), std::string::npos);
+    EXPECT_GT(filter.error(), 0.05);
+  }
+}
+
+TEST(GaussianMapFilter, OfALeafSizeKeepsTheCentroidsOfVoxelGrid) {
+  const auto cloud = wavyFloor<pcl::PointXYZ>(200, 150);
+  for (const int scale : {0, 2}) {
+    const float leaf = 0.3f * static_cast<float>(1 << scale);
+    pcl::VoxelGrid<pcl::PointXYZ> voxel_grid;
+    voxel_grid.setLeafSize(leaf, leaf, leaf);
+    voxel_grid.setInputCloud(cloud);
+    pcl::PointCloud<pcl::PointXYZ> voxels;
+    voxel_grid.filter(voxels);
+    GaussianMapFilter<pcl::PointXYZ> filter;
+    filter.setLeafSize(double(leaf) / (1 << scale));
+    filter.setScale(scale);
+    const auto kept = filtered<pcl::PointXYZ>(filter, cloud);
+    ASSERT_EQ(kept.size(), voxels.size());
+    for (const double distance : nearestDistances(positions(voxels), positions(kept))) EXPECT_LT(distance, 1e-4);
+  }
+}
+
+TEST(GaussianMapFilter, GivesTheMapWhoseGaussiansItKeeps) {
+  const auto cloud = wavyFloor<pcl::PointXYZ>(200, 150);  // all coordinates but z are positive
+  for (auto& point : *cloud) point.z += 5.0f;
+  GaussianMapFilter<pcl::PointXYZ> filter;
+  EXPECT_TRUE(filter.getMap().empty());
+  filter.setBudget(300);
+  const auto kept = filtered<pcl::PointXYZ>(filter, cloud);
+  const GaussianMapOctree map = filter.getMap();
+  EXPECT_EQ(map.weight(0), double(cloud->size()));
+  EXPECT_EQ(map.weight(1), double(cloud->size()));
+  ASSERT_EQ(map.cellCount(1), 1u);
+  ASSERT_EQ(map.gaussianCount(1), kept.size());
+  std::vector<Vector<3>> means;
+  for (std::size_t i = 0; i < kept.size(); ++i) means.push_back(map.gaussian(i, 1).mean);
+  for (const double distance : nearestDistances(means, positions(kept))) EXPECT_LT(distance, 1e-5);
+  filter.setMethod(FilterMethod::Split);
+  filtered<pcl::PointXYZ>(filter, cloud);
+  EXPECT_TRUE(filter.getMap().empty());
+}
+
+TEST(GaussianMapFilter, SplitsAsSplitPointsIfAskedTo) {
+  const auto cloud = wavyFloor<pcl::PointXYZ>();
+  for (const SplitRule rule : {SplitRule::Distance, SplitRule::Shape}) {
+    SplitPointsOptions options;
+    options.max_parts = 60;
+    options.rule = rule;
+    const PointParts parts = splitPoints(positions(*cloud), options);
+    GaussianMapFilter<pcl::PointXYZ> filter;
+    filter.setBudget(60);
+    filter.setDetail(rule);  // selects the method, too
+    const auto kept = filtered<pcl::PointXYZ>(filter, cloud);
+    EXPECT_EQ(filter.options().method, FilterMethod::Split);
+    ASSERT_EQ(kept.size(), parts.gaussians.size());
+    for (std::size_t i = 0; i < kept.size(); ++i)
+      EXPECT_EQ(kept[i].getVector3fMap(), parts.gaussians[i].mean.cast<float>());
+    EXPECT_EQ(filter.error(), parts.error);
+  }
+}
+
+TEST(GaussianMapFilter, GivesTheSamePointsOnAnyNumberOfThreads) {
+  const auto cloud = wavyFloor<pcl::PointNormal>(200, 150);
+  for (auto& point : *cloud) point.normal_x = point.normal_y = point.normal_z = 0.0f;
+  pcl::PointCloud<pcl::PointNormal> first;
+  for (const int threads : {1, 2, 5}) {
+    GaussianMapFilter<pcl::PointNormal> filter;
+    filter.setBudget(200);
+    filter.setNumberOfThreads(threads);
+    const auto kept = filtered<pcl::PointNormal>(filter, cloud);
+    if (first.empty()) first = kept;
+    ASSERT_EQ(kept.size(), first.size());
+    EXPECT_EQ(std::memcmp(kept.points.data(), first.points.data(), kept.size() * sizeof kept[0]), 0);
+  }
 }
 
 TEST(GaussianMapFilter, TakesAUsersOwnPointType) {

@@ -7,10 +7,11 @@
 #include <limits>
 #include <optional>
 #include <vector>
-#include "gaussmap/core/scans.h"
 
+#include "gaussmap/core/scans.h"
 #include "gaussmap/map/gaussian_map.h"
 #include "gaussmap/map/moment_grid.h"
+#include "gaussmap/points/split_points.h"
 #include "gaussmap/version.h"
 
 namespace gaussmap {
@@ -108,5 +109,55 @@ GAUSSMAP_API GaussianMap<D> build(const MapScale<D>& finest, const MapOptions& o
 template <int D = 3>
 GAUSSMAP_API GaussianMap<D> build(const Scans& scans, const MapOptions& options = {}, AccumulateOptions reading = {},
                                   PointCounts* counts = nullptr);
+
+/// Options of thinPoints(). Without max_gaussians, max_error and leaf_size, it keeps at most 10,000 Gaussians.
+struct ThinPointsOptions {
+  std::optional<std::size_t> max_gaussians;  ///< maximum number of Gaussians, >= 1; without a value: see above
+  /// If > 0: 95 % of the points must be at most this far from the point of their Gaussian [m]. The function keeps few
+  /// Gaussians for this: about 2 % more than the smallest number it can find. If 0: there is no such limit.
+  double max_error = 0.0;
+  /// If > 0: side of the cells of scale 0 [m]. Without max_gaussians and max_error, every occupied cell of `scale`
+  /// gives one Gaussian. If 0: chosen from the other limits.
+  double leaf_size = 0.0;
+  int scale = 0;                           ///< cells of leaf_size * 2^scale are used, in [0, 19]; needs leaf_size
+  PartPoint part_point = PartPoint::Mean;  ///< ThinnedPoints::error is the distance from this point of a Gaussian
+};
+
+/// The Gaussians that represent the points of a cloud, and the cells from which they were made.
+struct GAUSSMAP_API ThinnedPoints {
+  std::vector<std::int32_t> labels;  ///< per point: its Gaussian; -1 if the point is not finite
+  /// Mean, covariance and number of points, in the frame of the points. The covariance is divided by this number; it
+  /// can be singular. The order is that of the Morton codes of the first cells. It does not depend on the order of the
+  /// points.
+  std::vector<Gaussian<3>> gaussians;
+  std::vector<std::uint32_t> samples;  ///< per Gaussian: index of the point nearest to its mean
+  double error = 0.0;                  ///< 95 % of the points are at most this far from the point of their Gaussian [m]
+  bool error_kept = true;              ///< false if `error` is larger than ThinPointsOptions::max_error
+  double cell_side = 1.0;              ///< side of the cells [m]
+  std::vector<CellKey<3>> keys;        ///< the occupied cells
+  std::vector<CellMoments<3>> moments;     ///< per cell: the exact moments of its points
+  std::vector<std::uint32_t> cell_labels;  ///< per cell: its Gaussian
+
+  /// Returns the map of these cells. Scale 0 has the cells, with their moments. Scale 1 has the Gaussians of the cloud
+  /// in cells that are `ratio` times as wide, linked to the Gaussians of scale 0. A Gaussian whose finest cells lie in
+  /// several of these cells has one part per cell. The ratio is a power of two, so that there are few such parts: a
+  /// cell of scale 1 is as large as the cloud. The noise is 0 in `moments` and MapOptions::noise in the map.
+  GaussianMap<3> map() const;
+};
+
+/// Represents the points of a cloud by few Gaussians.
+///
+/// 1. The points are sorted into cells. There are 1.35 to about 8 cells per Gaussian that is wanted. The exact moments of
+///    each cell are summed.
+/// 2. Cells that are near to each other are merged, always the pair that adds least to the sum of squared distances
+///    between points and means (Ward 1963). Candidates are the pairs within a node of the octree with at most 64 cells.
+///    This leaves 1.2 times as many clusters as are wanted.
+/// 3. The same is repeated with the clusters, within larger nodes, until the budget is kept.
+///
+/// The result does not depend on the order of the points, up to equal distances in `samples`. The function uses one
+/// thread. Its cost is that of sorting n points. Points that are not finite are ignored. Throws std::invalid_argument
+/// if an option is out of range, and std::out_of_range if leaf_size is too small for the extent of the points (a
+/// millionth) or their distance from the origin.
+GAUSSMAP_API ThinnedPoints thinPoints(const PointsView& points, const ThinPointsOptions& options = {});
 
 }  // namespace gaussmap

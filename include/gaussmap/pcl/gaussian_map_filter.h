@@ -4,9 +4,13 @@
 #include <pcl/filters/filter.h>
 #include <pcl/point_types.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "gaussmap/map/gaussian_map.h"
+#include "gaussmap/mapping/build.h"
 #include "gaussmap/points/split_points.h"
 #include "gaussmap/version.h"
 
@@ -18,23 +22,39 @@ enum class FilterOutput {
   Samples  ///< the input points nearest to the means, so every output point was measured
 };
 
+/// How GaussianMapFilter groups the points.
+enum class FilterMethod {
+  Map,   ///< thinPoints(): sums of points in the cells of a Gaussian map, and merges of near cells
+  Split  ///< splitPoints(): splits the cloud and moves points to the nearest mean; slower, no map
+};
+
 /// Options of GaussianMapFilter.
 struct GaussianMapFilterOptions {
-  std::size_t budget = 10000;  ///< maximum number of points kept, >= 1
-  /// If > 0: keeps the smallest number of points (within the budget) for which 95 % of the input lie within this
-  /// distance of their output point [m]. If 0: keeps as many points as the budget allows.
+  /// Maximum number of points kept, >= 1. Without a value, it is 10,000 if neither an error nor a leaf size limits the
+  /// number of points.
+  std::optional<std::size_t> budget;
+  /// If > 0: keeps a small number of points for which 95 % of the input lie within this distance of their output point
+  /// [m]. If 0: keeps as many points as the budget allows.
   double max_error = 0.0;
+  /// If > 0: side of the finest cells of the map [m], FilterMethod::Map only. Without a budget and an error, each
+  /// occupied cell of `scale` gives one point, as with pcl::VoxelGrid. If 0: chosen from budget and error.
+  double leaf_size = 0.0;
+  int scale = 0;  ///< the cells of leaf_size * 2^scale are used, in [0, 19]; needs leaf_size
   FilterOutput output = FilterOutput::Means;  ///< means or samples
-  /// How the output is distributed. SplitRule::Distance: every input point gets an output point nearby.
-  /// SplitRule::Shape: few points on planes, many on curved surfaces. max_error is then the distance from the plane
-  /// through the output point.
+  FilterMethod method = FilterMethod::Map;    ///< how the points are grouped
+  /// FilterMethod::Split only: how the output is distributed. SplitRule::Distance: every input point gets an output
+  /// point nearby. SplitRule::Shape: few points on planes, many on curved surfaces. max_error is then the distance from
+  /// the plane through the output point.
   SplitRule detail = SplitRule::Distance;
-  int rounds = 3;   ///< rounds of k-means after the splitting, SplitRule::Distance only, >= 0
+  int rounds = 3;   ///< FilterMethod::Split and SplitRule::Distance only: rounds of k-means after the splitting, >= 0
   int threads = 0;  ///< 0 = all cores
 };
 
-/// Downsamples a cloud to a maximum number of points, or to the smallest number that keeps an error limit. It is used
-/// like pcl::VoxelGrid, for any registered point type with x, y, z.
+/// Downsamples a cloud with a Gaussian map: to a maximum number of points, to an error limit, or to the Gaussians of a
+/// scale. It is used like pcl::VoxelGrid, for any registered point type with x, y, z.
+///
+/// With FilterMethod::Map (default), the points are summed in the cells of a map, and near cells are merged (see
+/// thinPoints()). getMap() returns the map.
 ///
 /// Each output point represents the Gaussian of some input points.
 /// - With FilterOutput::Means, all other fields are averaged over these points: colours by channel, integers rounded,
@@ -63,14 +83,24 @@ class GAUSSMAP_API GaussianMapFilter : public pcl::Filter<PointT> {
 
   /// Sets the maximum number of points kept.
   void setBudget(std::size_t points) { options_.budget = points; }
-  /// Sets a distance [m]: 95 % of the input points must be at most this far from their output points. With 0, the
-  /// filter keeps as many points as the budget allows. If the budget is too small for this distance, the budget
-  /// decides, and error() is larger than the distance.
+  /// Sets a distance [m]: 95 % of the input points must be at most this far from their output points. With 0, there is
+  /// no such limit. If the distance cannot be kept, for example because setBudget() is too small, the filter prints a
+  /// warning, and error() is larger than the distance.
   void setMaxError(double metres) { options_.max_error = metres; }
+  /// Sets the side of the finest cells [m], as for pcl::VoxelGrid. See GaussianMapFilterOptions::leaf_size. 0:
+  /// automatic.
+  void setLeafSize(double metres) { options_.leaf_size = metres; }
+  /// Sets the scale whose cells are used: 0 = cells of the leaf size, 1 = twice as wide, 2 = four times as wide ...
+  void setScale(int scale) { options_.scale = scale; }
   /// Selects means or samples.
   void setOutput(FilterOutput output) { options_.output = output; }
-  /// Selects how the output is distributed, see GaussianMapFilterOptions::detail.
-  void setDetail(SplitRule detail) { options_.detail = detail; }
+  /// Selects how the points are grouped.
+  void setMethod(FilterMethod method) { options_.method = method; }
+  /// Selects FilterMethod::Split and how its output is distributed, see GaussianMapFilterOptions::detail.
+  void setDetail(SplitRule detail) {
+    options_.method = FilterMethod::Split;
+    options_.detail = detail;
+  }
   /// Sets the number of threads; 0 = all cores.
   void setNumberOfThreads(int threads) { options_.threads = threads; }
   /// Returns the options.
@@ -85,14 +115,28 @@ class GAUSSMAP_API GaussianMapFilter : public pcl::Filter<PointT> {
   /// Returns the error of the last filter(): 95 % of the input lie within this distance of their output point [m]. With
   /// SplitRule::Shape, the distance is that from the plane through this point.
   double error() const { return error_; }
+  /// Returns the map of the last filter(), see ThinnedPoints::map(). Its scale 0 has the cells with their exact
+  /// moments, its scale 1 the Gaussians of the output. The map is made by this call. It is empty if FilterMethod::Split
+  /// was used or if nothing was filtered.
+  GaussianMapOctree getMap() const { return cells_.map(); }
 
  protected:
   void applyFilter(PointCloud& output) override;
 
  private:
+  /// The groups of the points that are filtered. Labels and samples are indices of `points`.
+  struct Groups {
+    std::vector<std::int32_t> labels;
+    std::vector<std::uint32_t> samples;
+    bool error_kept = true;
+  };
+  /// Groups the points and sets gaussians_, error_ and cells_. Throws if an option is out of range.
+  Groups group(const PointsView& points);
+
   GaussianMapFilterOptions options_;
   std::vector<std::int32_t> labels_;
   std::vector<Gaussian<3>> gaussians_;
+  ThinnedPoints cells_;  // only the cells: the other results are moved out
   double error_ = 0.0;
 };
 
