@@ -76,8 +76,9 @@ class HeightCheckedReader : public ScanReader {
 }  // namespace
 
 std::string notPlanarText(double lowest, double highest) {
-  return "not a scan of a planar laser: the heights of its points in the map are " + numberText(lowest) + " m to " +
-         numberText(highest) + " m; use a slice of it (--slice Z0 Z1)";
+  const auto millimetres = [](double height) { return numberText(std::round(1e3 * height) / 1e3 + 0.0); };  // not "-0"
+  return "not a scan of a planar laser: the heights of its points in the map are " + millimetres(lowest) + " m to " +
+         millimetres(highest) + " m; use a slice of it (--slice Z0 Z1)";
 }
 
 Scan levelled(const Scan& scan, const PlanarScanOptions& options) {
