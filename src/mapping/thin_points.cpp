@@ -28,6 +28,8 @@ constexpr double kBeforeLastRound = 1.2;  // clusters per Gaussian
 constexpr double kCellPerError = 0.9;     // side of a cell per max_error: about two cells per Gaussian
 constexpr double kWithinFewest = 1.02;    // of the smallest number of Gaussians that keeps max_error
 constexpr int kShortCode = 12;            // bits per axis that three passes of a radix sort take
+constexpr int kShortCodeOfFew = 10;       // four passes of the sort of few points
+constexpr std::size_t kFewPoints = 3000;
 
 void checkOptions(const ThinPointsOptions& options) {
   if (options.max_gaussians)
@@ -144,7 +146,8 @@ class CloudCells {
     std::vector<std::uint32_t> labels(size());
     for (std::size_t i = 0; i < labels.size(); ++i) labels[i] = std::uint32_t(i);
     if (size() <= count) return labels;
-    const auto more = std::max(count, std::size_t(kBeforeLastRound * double(count)));
+    const bool are_few = size() <= 4 * WardMerges::kMaxGroup;  // then one round saves time
+    const auto more = are_few ? count : std::max(count, std::size_t(kBeforeLastRound * double(count)));
     std::vector<WardCluster> clusters;
     std::size_t left = size();
     if (left > more) {
@@ -289,7 +292,7 @@ ThinnedPoints thinPoints(const PointsView& points, const ThinPointsOptions& opti
   const auto budget =
       options.max_gaussians.value_or(has_error || has_leaf ? std::numeric_limits<std::size_t>::max() : kDefaultBudget);
   const double wanted_side = kCellPerError * options.max_error;
-  SortedPoints sorted(points, options.leaf_size, kShortCode);
+  SortedPoints sorted(points, options.leaf_size, points.count < kFewPoints ? kShortCodeOfFew : kShortCode);
   const bool are_many = budget > sorted.size() / kPointsPerGaussianIfMany;
   const double cells = (are_many ? kCellsPerGaussianIfMany : kCellsPerGaussian) * std::min(double(budget), 1e15);
   const auto wanted = std::max(kFewestCells, std::size_t(cells));

@@ -147,8 +147,8 @@ struct GAUSSMAP_API ThinnedPoints {
 
 /// Represents the points of a cloud by few Gaussians.
 ///
-/// 1. The points are sorted into cells. There are 1.35 to about 8 cells per Gaussian that is wanted. The exact moments of
-///    each cell are summed.
+/// 1. The points are sorted into cells, 1.35 to about 8 per Gaussian that is wanted. The exact moments of each cell are
+///    summed.
 /// 2. Cells that are near to each other are merged, always the pair that adds least to the sum of squared distances
 ///    between points and means (Ward 1963). Candidates are the pairs within a node of the octree with at most 64 cells.
 ///    This leaves 1.2 times as many clusters as are wanted.
