@@ -2,7 +2,8 @@
 // gaussmap_benchmark moving-points DIR...: compares how gaussmap clean, pcd2map --online and OctoMap remove moving
 // objects from the same scans, with one thread, at 0.2 and 0.1 m. OctoMap uses insertPointCloud with rays; points of
 // free cells are removed. Prints SA, DA and AA in percent against the field `label` (without this field all points
-// count as static), and the seconds per scan without reading.
+// count as static), and the seconds per scan without reading. With --free-points: how freePoints(), and so
+// DynamicPointsFilter, removes them by a map of all scans, and by a map of the scans before each scan.
 #include <octomap/octomap.h>
 
 #include <CLI/CLI.hpp>
@@ -12,6 +13,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "clock.h"
@@ -137,17 +139,69 @@ double octomapWithRays(const Sequence& sequence, double resolution) {
   return seconds;
 }
 
+/// Removes points from every scan number `every` - 1, 2 `every` - 1 and so on.
+void freeSpace(const Sequence& sequence, double resolution, std::size_t every) {
+  OnlineOptions options;
+  options.map.resolution = resolution;
+  options.threads = 1;
+  const std::pair<UnknownSpace, const char*> modes[] = {
+      {UnknownSpace::Automatic, "Automatic"}, {UnknownSpace::Keep, "Keep"}, {UnknownSpace::Remove, "Remove"}};
+  for (const bool whole : {true, false}) {
+    RemovalScore scores[3];
+    double seconds[3] = {};
+    std::size_t scans = 0;
+    const auto test = [&](const GaussianMapOctree& map, std::size_t s) {
+      ++scans;
+      std::vector<Eigen::Vector3d> points;
+      std::vector<bool> moves;
+      for (std::size_t p = 0; p < sequence.labels[s].size(); ++p) {
+        if (!isReturn(sequence.scans[s].points[p])) continue;
+        points.push_back(sequence.inMap(s, p));
+        moves.push_back(sequence.labels[s][p] != 0.0);
+      }
+      for (int mode = 0; mode < 3; ++mode) {
+        FreePointOptions free;
+        free.unknown = modes[mode].first;
+        free.threads = 1;
+        const double start = wallSeconds();
+        const std::vector<bool> removed = freePoints(map, points, sequence.scans[s].pose.translation, free);
+        seconds[mode] += wallSeconds() - start;
+        for (std::size_t p = 0; p < points.size(); ++p) scores[mode].add(moves[p], removed[p]);
+      }
+    };
+    OnlineMapper<3> mapper(options);
+    for (std::size_t s = 0; s < sequence.scans.size(); ++s) {
+      if (!whole && s > 0 && (s + 1) % every == 0) test(mapper.map(), s);
+      mapper.add(sequence.scans[s]);
+    }
+    if (whole) {
+      const GaussianMapOctree map = mapper.map();
+      for (std::size_t s = every - 1; s < sequence.scans.size(); s += every) test(map, s);
+    }
+    std::printf(" map of %s scans\n", whole ? "all" : "the earlier");
+    for (int mode = 0; mode < 3; ++mode) print(modes[mode].second, scores[mode], seconds[mode], scans);
+  }
+}
+
 }  // namespace
 
 void addMovingPoints(CLI::App& app) {
   const auto folders = std::make_shared<std::vector<std::string>>();
   CLI::App& command = *app.add_subcommand("moving-points", "moving objects: clean, pcd2map --online and OctoMap");
   command.add_option("dir", *folders, "directories of PCD scans")->required();
-  command.callback([folders] {
+  const auto free_points = std::make_shared<bool>(false);
+  const auto every = std::make_shared<std::size_t>(1);
+  command.add_flag("--free-points", *free_points, "freePoints() instead");
+  command.add_option("--every", *every, "--free-points: test only every this many scans")->check(CLI::PositiveNumber);
+  command.callback([folders, free_points, every] {
     for (const std::string& folder : *folders) {
       const Sequence sequence(folder);
       for (const double resolution : {0.2, 0.1}) {
         std::printf("%s, %zu scans, %.1f m\n", folder.c_str(), sequence.scans.size(), resolution);
+        if (*free_points) {
+          freeSpace(sequence, resolution, *every);
+          continue;
+        }
         clean(sequence, resolution);
         const double ours = online(sequence, resolution);
         const double theirs = octomapWithRays(sequence, resolution);
