@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <new>
 
 #include "io/files/open_files.h"
 
@@ -55,6 +56,8 @@ void endIfAFileWasCutOff(int, siginfo_t* info, void*) {
   };
   try {
     if (const std::exception_ptr thrown = std::current_exception()) std::rethrow_exception(thrown);
+  } catch (const std::bad_alloc&) {
+    end("out of memory");
   } catch (const std::exception& error) {
     end(error.what());
   } catch (...) {
