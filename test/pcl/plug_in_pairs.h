@@ -30,6 +30,7 @@
 #include "gaussmap/pcl/normal_estimation.h"
 #include "gaussmap/pcl/online_mapper.h"
 #include "gaussmap/pcl/registration.h"
+#include "gaussmap/pcl/search.h"
 #include "gaussmap/pcl/segment_fitter.h"
 #include "map/inherit_occupancy.h"
 
@@ -228,6 +229,41 @@ Outcome octreeOfPcl(const Input<PointT>& input) {
       outcome.count += leaf.getLeafContainer().getSize();
   });
 }
+
+/// GaussianMapSearch and pcl::search::KdTree: the points that they find near some places.
+template <typename PointT>
+struct Searching {
+  using Point = PointT;
+  static constexpr bool kPclTakesNan = true, kPclTakesIndices = true, kKeepsRows = false;
+  static Outcome run(pcl::search::Search<PointT>& search, const Input<PointT>& input) {
+    return outcomeOf([&](Outcome& outcome) {
+      search.setInputCloud(input.cloud, input.indices);
+      for (const Eigen::Vector3f& place :
+           {Eigen::Vector3f(4, 0, 0), Eigen::Vector3f(-1, 3, 1), Eigen::Vector3f(9, 9, 9)}) {
+        PointT query{};
+        query.getVector3fMap() = place;
+        pcl::Indices found;
+        std::vector<float> squares;
+        const auto take = [&](int count) {
+          outcome.count += static_cast<std::size_t>(count);
+          for (const auto index : found)
+            outcome.values.push_back((*input.cloud)[static_cast<std::size_t>(index)].getVector3fMap());
+        };
+        take(search.nearestKSearch(query, 30, found, squares));
+        take(search.radiusSearch(query, 1.5, found, squares));
+      }
+    });
+  }
+  static Outcome ours(const Input<PointT>& input) {
+    GaussianMapSearch<PointT> search;
+    return run(search, input);
+  }
+  static Outcome ofPcl(const Input<PointT>& input) {
+    if (!input.cloud || input.cloud->empty()) return {};  // PCL's tree would read through a null pointer
+    pcl::search::KdTree<PointT> search;
+    return run(search, input);
+  }
+};
 
 /// PointCloudMapBuilder and pcl::octree::OctreePointCloud.
 template <typename PointT>

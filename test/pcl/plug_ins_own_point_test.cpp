@@ -10,9 +10,10 @@
 namespace gaussmap::test {
 namespace {
 
-using Pairs = testing::Types<Thinning<RingPoint>, Selection<RingPoint>, Normals<RingPoint>,
-                             Registrations<RingPoint, pcl::IterativeClosestPoint>, Building<RingPoint>,
-                             OnlineMapping<RingPoint>, Clustering<RingPoint>, Segments<RingPoint>>;
+using Pairs =
+    testing::Types<Thinning<RingPoint>, Selection<RingPoint>, Normals<RingPoint>,
+                   Registrations<RingPoint, pcl::IterativeClosestPoint>, Building<RingPoint>, OnlineMapping<RingPoint>,
+                   Searching<RingPoint>, Clustering<RingPoint>, Segments<RingPoint>>;
 INSTANTIATE_TYPED_TEST_SUITE_P(OwnPointType, PlugIn, Pairs, );
 
 }  // namespace

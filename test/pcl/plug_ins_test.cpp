@@ -16,7 +16,7 @@ class Ndt : public pcl::NormalDistributionsTransform<Source, Target> {
 
 using Pairs = testing::Types<Thinning<pcl::PointXYZ>, Selection<pcl::PointXYZ>, Normals<pcl::PointXYZ>,
                              Registrations<pcl::PointXYZ, Ndt>, Building<pcl::PointXYZ>, OnlineMapping<pcl::PointXYZ>,
-                             Clustering<pcl::PointXYZ>, Segments<pcl::PointXYZ>>;
+                             Searching<pcl::PointXYZ>, Clustering<pcl::PointXYZ>, Segments<pcl::PointXYZ>>;
 INSTANTIATE_TYPED_TEST_SUITE_P(PointTypeOfPcl, PlugIn, Pairs, );
 
 }  // namespace
