@@ -25,7 +25,7 @@ Clouds are combined as in pcd2map. A PLY file with faces is a mesh, without face
 exact distances to its surface, and ref->map are the distances of --samples points on it. Another map is sampled in
 the same way at the same scale, so the distance of two equal maps is 0.
 
-A planar map lies in the plane z = 0. Scans lose their heights, and 3-D scans need --slice.
+A planar map lies in the plane z = 0, and the heights of the points of scans are dropped. 3-D scans need --slice.
 
 --held-out: a point x scores ln((1 - e) p(x) + e / V). p is the density of the scale [1/m^3] (planar: [1/m^2]), e is
 --background, and V is the volume (planar: area) of the box around the points. A point far from all Gaussians
@@ -35,7 +35,7 @@ Larger is better. Compare only scores of the same points. Make sure that the map
 --write-errors: fields x y z error rgb, from blue = 0 over cyan, green and yellow to red = 99 % quantile and above.
 
 --check: computes the distances a second time with the exact kd-tree of FLANN, and fails if one differs by more than
-rounding. For points and maps as the reference. The rows "2 sigma" are not checked.
+rounding. The reference must be points or a map, not a mesh. The rows "2 sigma" are not checked.
 
 More examples: gaussmap hausdorff street.gmap street.ply --scale 2 --write-errors errors.pcd
                gaussmap hausdorff street.gmap scans_never_used/ --held-out)"};
@@ -69,7 +69,7 @@ void check(const HausdorffCommand& command, bool of_map, ReferenceKind reference
   if (command.max_only && (of_map || reference != ReferenceKind::Cloud || command.held_out))
     throw UsageError("--max-only: only for a cloud and clouds as the reference");
   if (command.max_only && writes) throw UsageError("--write-errors: needs all distances; leave out --max-only");
-  if (!of_map && !command.slice.empty()) throw UsageError("--slice: only for planar maps; --crop can have heights");
+  if (!of_map && !command.slice.empty()) throw UsageError("--slice: only for planar maps; use --crop with heights");
   if (command.check && command.held_out)
     throw UsageError("--check: checks distances, which --held-out does not measure");
   if (command.check && reference == ReferenceKind::Mesh)

@@ -33,7 +33,7 @@ Readers see either the old or the new file.
 
 --planar builds a map in the plane z = 0 from scans of a planar laser: files of any kind, logs of CARMEN, LaserScan
 messages of recordings. 3-D scans need --slice: points between two heights of the map frame. With --online, only the
-nearest of these points in every direction is used. --update keeps the kind of the map.)"};
+nearest of these points in every direction is used. --update reads from the file whether the map is planar.)"};
 
 template <int D>
 void run(const Pcd2mapOptions& options) {

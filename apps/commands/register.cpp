@@ -39,7 +39,7 @@ A scan without usable points, a damaged file, or a scan that is not found on the
 others are registered. The exit code is then 1.
 
 In a planar map, only x, y and the heading are searched. The height and the tilt of the pose are those of the guess.
-3-D scans need --slice: the points between two heights of the map frame, seen from the guess.
+3-D scans need --slice: the points between two heights of the map frame, computed with the guess.
 
 Maps can be given in place of scans. A map in place of a scan starts at the identity (it is not moved), unless --guess
 or --poses is given.)"};

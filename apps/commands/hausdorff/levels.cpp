@@ -41,7 +41,7 @@ template <int D>
 std::vector<Vector<D>> readReference(const HausdorffCommand& command, double resolution) {
   const int threads = command.samples.threads;
   if constexpr (D == 3) {
-    if (!command.slice.empty()) throw UsageError("--slice: only for planar maps; --crop can have heights");
+    if (!command.slice.empty()) throw UsageError("--slice: only for planar maps; use --crop with heights");
     return readPoints(command.reference, threads, resolution);
   } else {
     const AccumulateOptions limits =

@@ -168,7 +168,7 @@ void updateFromScans(const Pcd2mapOptions& options) {
   const int dimensions = dimensionsOf(options.update);
   if (dimensions == 3 && (options.planar || !options.slice.empty()) && isMap(options.update))
     throw UsageError(std::string(options.planar ? "--planar" : "--slice") + ": " + options.update +
-                     " is a 3-D map; scans are added to it as they are");
+                     " is a 3-D map; the option is for planar maps only");
   forDimensions(dimensions, [&](auto d) { update<d()>(options); });
 }
 
