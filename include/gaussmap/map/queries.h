@@ -78,9 +78,9 @@ struct FoundGaussian {
 /// Returns the Gaussian of a scale whose mean is nearest to a point [m, map frame]. Returns std::nullopt if the scale
 /// is empty.
 ///
-/// The distance is Euclidean and has no limit. If several distances are equal, the smallest index counts. The search
-/// needs no preparation. For many queries of one map, MapSearch is faster. Throws std::out_of_range if the map does not
-/// have the scale, or if the point is not finite or out of the grid's range.
+/// The distance is Euclidean and has no limit. If several means are equally near, returns the one with the smallest
+/// index. The search needs no preparation. For many queries of one map, MapSearch is faster. Throws std::out_of_range
+/// if the map does not have the scale, or if the point is not finite or out of the grid's range.
 template <int D>
 GAUSSMAP_API std::optional<NearestGaussian<D>> nearest(const GaussianMap<D>& map, const Vector<D>& point, int scale);
 /// Returns the `k` Gaussians of a scale whose means are nearest to a point, or all if the scale has fewer. They are
@@ -127,8 +127,8 @@ class GAUSSMAP_API MapSearch {
   /// Returns the number of means.
   std::size_t size() const;
   /// Returns the Gaussian whose mean is nearest to a point [m, map frame], or std::nullopt if there are no means. If
-  /// several distances are equal, the finest scale counts, then the smallest index. Throws std::out_of_range if the
-  /// point is not finite or out of the grid's range.
+  /// several means are equally near, returns the one of the finest scale, and of these the one with the smallest index.
+  /// Throws std::out_of_range if the point is not finite or out of the grid's range.
   std::optional<FoundGaussian> nearest(const Vector<D>& point) const;
   /// Returns the `k` Gaussians whose means are nearest to a point. Order and errors are those of nearestLeaves().
   std::vector<FoundGaussian> nearest(const Vector<D>& point, int k) const;

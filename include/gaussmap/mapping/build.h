@@ -160,9 +160,9 @@ struct GAUSSMAP_API ThinnedPoints {
 ///    most 64 cells are considered. This step stops at 1.2 times the final number of clusters.
 /// 3. The clusters are merged in the same way, within larger octree nodes, until the final number is reached.
 ///
-/// The result does not depend on the order of the points, except that of equal distances, ThinnedPoints::samples takes
-/// the point with the smaller index. The function uses one thread. Most of its time is spent on sorting the points.
-/// Points that are not finite are ignored.
+/// The result does not depend on the order of the points, with one exception: if several points are equally near to a
+/// mean, ThinnedPoints::samples takes the one with the smallest index. The function uses one thread. Its cost grows
+/// like that of sorting the points. Points that are not finite are ignored.
 ///
 /// Throws std::invalid_argument if an option is out of range; the message names it. Throws std::out_of_range if
 /// leaf_size is smaller than about 1/500,000 of the extent of the points, or too small for their distance from the

@@ -47,7 +47,7 @@ struct GaussianMapFilterOptions {
   /// the plane through the output point.
   SplitRule detail = SplitRule::Distance;
   int rounds = 3;   ///< FilterMethod::Split and SplitRule::Distance only: rounds of k-means after the splitting, >= 0
-  int threads = 0;  ///< 0 = all cores
+  int threads = 0;  ///< 0 = all cores; FilterMethod::Map uses them only for normals
 };
 
 /// Downsamples a cloud with a Gaussian map: to a maximum number of points, to an error limit, or to the Gaussians of a
