@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Compilers go on after #error, and report hundreds of errors with an older C++. They stop at a missing file.
+// An older C++ standard gives hundreds of errors in the headers. #error does not stop the compiler before them, but a
+// missing file does.
 #if __cplusplus < 201703L
 #include "gaussmap needs C++17: compile with -std=c++17 or later"
 #endif
 
-// With the flag -mavx or -march=native, Eigen aligns its types more strictly. PCL's classes then have another layout
-// than in the library, and a program would crash. The target gaussmap::pcl defines the alignment of the library.
+// With the flag -mavx or -march=native, Eigen aligns its types more strictly. The classes of PCL then have one layout
+// in the program and another in the library, and the program crashes. The CMake target gaussmap::pcl defines
+// GAUSSMAP_PCL_EIGEN_ALIGNMENT as the alignment of the library.
 #ifdef GAUSSMAP_PCL_EIGEN_ALIGNMENT
 #include <Eigen/Core>
 #if EIGEN_MAX_ALIGN_BYTES != GAUSSMAP_PCL_EIGEN_ALIGNMENT

@@ -16,13 +16,14 @@ struct WardCluster {
   std::uint64_t code = 0;
 };
 
-/// The merges of clusters within groups of neighbours. Few merges lie across groups, because a group is the largest
-/// octree node with at most kMaxGroup clusters.
+/// The merges of clusters within groups of neighbours. Clusters of different groups are never merged. To lose few
+/// merges by this, a group is as large as possible: the largest octree node with at most kMaxGroup clusters.
 ///
-/// The cost of a merge is that of Ward (1963): w_1 w_2 / (w_1 + w_2) |m_1 - m_2|^2, the increase of the sum of squared
-/// distances to the means. Per group, the constructor makes the complete dendrogram by merging all pairs of clusters
-/// that are nearest to each other, again and again. Costs are floats of which 17 bits of the mantissa count. If costs
-/// are equal, the order of the clusters decides, so the result depends on the input only.
+/// The cost of a merge is that of Ward (1963): w_1 w_2 / (w_1 + w_2) |m_1 - m_2|^2. It is the increase of the sum of
+/// squared distances to the means. The constructor computes the complete dendrogram of each group. In each round, it
+/// merges all pairs of clusters of which each is the cheapest partner of the other. To find the cheapest partner, costs
+/// are compared with 17 bits of the mantissa of a float. If they are equal, the order of the clusters decides, so the
+/// result depends on the input only.
 class GAUSSMAP_API WardMerges {
  public:
   static constexpr std::size_t kMaxGroup = 64;
@@ -32,8 +33,8 @@ class GAUSSMAP_API WardMerges {
 
   /// Returns the smallest number of clusters that these merges can leave: the number of groups.
   std::size_t fewest() const { return size_ - merges_.size(); }
-  /// Makes the cheapest merges until `count` clusters are left, or fewest() if this is more. Returns per cluster the
-  /// number of its union; the unions are numbered by their first cluster.
+  /// Applies the cheapest merges until max(count, fewest()) clusters are left. Returns, per cluster, the number of its
+  /// union. The unions are numbered in the order of their first clusters.
   std::vector<std::uint32_t> cut(std::size_t count) const;
 
   /// A merge of the unions whose first clusters are `first` < `second`.
@@ -44,7 +45,7 @@ class GAUSSMAP_API WardMerges {
 
  private:
   std::size_t size_ = 0;
-  std::vector<Merge> merges_;  // per group, each after the merges of its parts; the cost of a merge is not below theirs
+  std::vector<Merge> merges_;  // group by group; a merge follows the merges of its parts and is not cheaper than they
 };
 
 }  // namespace gaussmap::detail

@@ -9,7 +9,7 @@
 
 namespace gaussmap::detail {
 
-/// The first limit of a search for the nearest means [m].
+/// Limit of a search that accepts means at any distance [m].
 inline constexpr double kAnyDistance = std::numeric_limits<double>::infinity();
 
 /// Throws std::out_of_range if a map does not have a scale.
@@ -26,10 +26,12 @@ void checkQuery(const Grid<D>& grid, const Vector<D>& point) {
   static_cast<void>(grid.keyOf(point));
 }
 
+/// Throws std::invalid_argument if a number of neighbours is negative.
 inline void checkCount(int k) {
   if (k < 0) throw std::invalid_argument("k = " + std::to_string(k) + ": expected a number of Gaussians, at least 0");
 }
 
+/// Throws std::invalid_argument if a radius [m] is negative or NaN.
 inline void checkRadius(double radius) {
   if (!(radius >= 0.0))
     throw std::invalid_argument("radius = " + std::to_string(radius) + ": expected a number of metres, at least 0");

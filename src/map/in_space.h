@@ -7,7 +7,7 @@
 
 namespace gaussmap::detail {
 
-/// Returns a planar map as a map in space, for everything that shows or writes Gaussians in space.
+/// Returns a planar map as a map in space, for functions that show or write Gaussians in space.
 ///
 /// The scales, the weights, the links and the log-odds are the same. Cell (x, y) becomes cell (x, y, 0). All means lie
 /// in the plane z = 0, which is the lower face of these cells. The standard deviation across the plane is

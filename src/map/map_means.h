@@ -7,7 +7,8 @@
 
 namespace gaussmap::detail {
 
-/// Returns the mean of GaussianMap::localGaussian(), without computing a covariance from moments.
+/// Returns the mean of GaussianMap::localGaussian() [m, relative to the centre of its cell]. It is faster, because it
+/// computes no covariance from the moments.
 template <int D>
 Vector<D> localMean(const GaussianMap<D>& map, std::size_t index, int scale) {
   const MapScale<D>& level = map.scale(scale);

@@ -14,13 +14,15 @@
 
 namespace gaussmap::detail {
 
-/// Searches the means of a map from the coarsest scale down. It needs no other data than the map: in key order, each
-/// range of cells is a binary tree, because the keys of its first and its last cell bound it.
+/// Searches the means of a map, from the coarsest scale to the finer ones. It needs no data except the map. The cells
+/// with one parent are sorted by key, and halving such a range again and again gives a binary tree. The keys of the
+/// first and the last cell of a part bound all its cells.
 template <int D>
 class MeanSearch {
  public:
-  /// `scale`: the scale whose means are searched, or kLeaves. The point must be in the grid's range.
   static constexpr int kLeaves = -1;
+  /// `scale`: the scale whose means are searched, or kLeaves. The point must be in the grid's range. The map and the
+  /// point must live as long as this object.
   MeanSearch(const GaussianMap<D>& map, const Vector<D>& point, int scale) : map_(map), point_(point), scale_(scale) {
     for (int s = 0; s < map.scales(); ++s) {
       Level& level = levels_[static_cast<std::size_t>(s)];
@@ -32,18 +34,20 @@ class MeanSearch {
     }
   }
 
-  /// Adds the means within `found.limit()` [m] to `found` (see nearest_list.h), near ones first. The limit can shrink
-  /// meanwhile. The index of a result is packed by packId().
+  /// Adds the means within `found.limit()` [m] to `found` (see nearest_list.h), visiting near cells first. The limit
+  /// can shrink during the search. The index of a result is that of packId().
   template <typename Found>
   void searchNearFirst(Found& found) const {
     search<false>(map_.scales() - 1, 0, map_.cellCount(map_.scales() - 1), found);
   }
-  /// Does the same in the order of the cells. This is faster if the limit is a few cells, or if it cannot shrink.
+  /// Adds the same means, but visits the cells in key order. This is faster if the limit is a few cells, or if it
+  /// cannot shrink.
   template <typename Found>
   void searchBox(Found& found) const {
     search<true>(map_.scales() - 1, 0, map_.cellCount(map_.scales() - 1), found);
   }
 
+  /// Packs the scale and the index of a Gaussian into one number. Its order is by scale, then by index.
   static std::uint64_t packId(int scale, std::size_t index) {
     return static_cast<std::uint64_t>(scale) * kIndices + index;
   }
@@ -65,7 +69,7 @@ class MeanSearch {
     const CellKey<D>* keys;
     double square_side;      // [m^2]
     double per_side;         // [1/m]
-    Vector<D> below, above;  // the point [cells]: a cell k is apart by k - below or above - k
+    Vector<D> below, above;  // the point [cells]: the gap to cell k is max(0, k - below, above - k) per axis
   };
 
   /// Returns the square of the distance of the point from an interval of cells on one axis [cells^2].
@@ -82,7 +86,7 @@ class MeanSearch {
     return square * level.square_side;
   }
 
-  /// Returns a lower bound of the same for all cells of a range that have one parent.
+  /// Returns a lower bound of the squared distances [m^2] of the point from all cells of a range with one parent.
   static double squaredGap(const Level& level, std::size_t first, std::size_t last) {
     const CellKey<D>&a = level.keys[first], &b = level.keys[last - 1];
     double square = 0.0;
@@ -166,8 +170,8 @@ class MeanSearch {
     }
   }
 
-  /// Returns a key above `key`, which is outside the box: no key between them is in the box. Returns std::nullopt if
-  /// the box has no key above `key`.
+  /// Returns a key above `key` such that no key between the two is in the box. `key` must be outside the box. Returns
+  /// std::nullopt if the box has no key above `key`.
   static std::optional<CellKey<D>> nextInBox(const CellKey<D>& key, const CellKey<D>& low, const CellKey<D>& high) {
     CellKey<D> next = key;
     std::size_t axis = 0;
@@ -181,7 +185,7 @@ class MeanSearch {
     return next;
   }
 
-  /// Returns a whole number as the index of a cell; beyond the range of indices, the last index.
+  /// Converts a whole number to the index of a cell, clamped to the range of the indices.
   static std::int32_t asIndex(double number) {
     constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min();
     constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();

@@ -13,15 +13,16 @@
 
 namespace gaussmap::detail {
 
-/// The finite points of a cloud, sorted into nested cells. Cells of level 0 have the side given; the sides of the next
-/// levels are twice as long each. Cells of all levels are cells of a Grid with this side as resolution.
+/// The finite points of a cloud, sorted into nested cells. The cells of level 0 have a given side. From one level to
+/// the next, the side doubles. The cells of a level are those of a Grid whose resolution is the side of the level.
 class SortedPoints {
  public:
   static constexpr int kMaxBits = 20;
 
-  /// `side`: of the cells of level 0 [m]; 0: the longest side of the bounding box has between 2^(bits - 2) and
-  /// 2^(bits - 1) cells, but a cell is not smaller than the steps of the coordinates. Throws std::out_of_range if the
-  /// points need more than kMaxBits bits per axis.
+  /// `side`: side of the cells of level 0 [m]. If it is 0, the longest side of the bounding box has almost 2^(bits - 1)
+  /// cells, but a cell is not smaller than the resolution of the float coordinates. `bits` is used only for this.
+  /// Throws std::out_of_range if the codes need more than kMaxBits bits per axis, or if the points are too far from the
+  /// origin for cells of this side.
   SortedPoints(const PointsView& points, double side, int bits);
 
   /// Returns the number of finite points.
@@ -39,7 +40,7 @@ class SortedPoints {
   std::uint32_t index(std::size_t i) const { return indices_[i]; }
   /// Returns the Morton code of the level-0 cell of the i-th point.
   std::uint64_t code(std::size_t i) const { return codes_[i]; }
-  /// Returns the cell of a level that has this code, shifted to that level.
+  /// Returns the key of the cell of a level that has this code. The code is already shifted to the level.
   CellKey<3> keyOf(std::uint64_t code, int level) const;
 
  private:
@@ -63,7 +64,7 @@ struct SortedCells {
   std::vector<std::uint32_t> first_point;  // n + 1 positions in SortedPoints
 };
 
-/// Makes the cells of a level. A point is rounded to the lattice of CellMoments, but not across the border of its cell.
+/// Returns the cells of a level. Points are rounded to the lattice of CellMoments, but never into another cell.
 SortedCells cellsOf(const SortedPoints& sorted, const PointsView& points, int level);
 
 }  // namespace gaussmap::detail

@@ -18,13 +18,13 @@ struct Neighbour {
   }
 };
 
-/// Collects the nearest one of all added neighbours.
+/// Collects the nearest one of all added neighbours, up to a first limit.
 template <typename Distance, typename Index>
 class NearestOne {
  public:
   explicit NearestOne(Distance limit) : best_{limit, static_cast<Index>(-1)} {}
 
-  /// Only neighbours up to this distance can still be collected.
+  /// Returns the limit: farther neighbours are not collected. It shrinks when a neighbour is collected.
   Distance limit() const { return best_.distance; }
   /// Returns false if the neighbour is not collected.
   bool add(Distance distance, Index index) {
@@ -40,7 +40,8 @@ class NearestOne {
   Neighbour<Distance, Index> best_;
 };
 
-/// Collects the nearest `count` >= 1 of all added neighbours up to a first limit.
+/// Collects the `count` >= 1 nearest of all added neighbours, up to a first limit. The limit shrinks once there are
+/// `count` neighbours.
 template <typename Distance, typename Index>
 class NearestList {
  public:
@@ -76,7 +77,7 @@ class NearestList {
     return true;
   }
   bool full() const { return entries_.size() == count_; }
-  /// Returns all collected neighbours in order.
+  /// Returns all collected neighbours in order. Nothing can be added afterwards.
   const std::vector<Entry>& sort() {
     if (count_ > kFew) std::sort_heap(entries_.begin(), entries_.end());
     return entries_;

@@ -12,29 +12,30 @@
 
 namespace gaussmap::detail {
 
-/// Points under a tree of tight boxes, for single queries. The points are sorted along a space-filling curve (Morton),
-/// so building the tree takes a fraction of the time of a kd-tree. A node has up to four children, whose boxes are
-/// compared with the query at once.
+/// A tree of bounding boxes over points, for searches of the neighbours of single queries. The points are sorted along
+/// a space-filling curve (Morton), which takes a fraction of the time of building a kd-tree. A node has up to four
+/// children. The query is compared with all their boxes at once.
 ///
-/// Squared distances are computed in `Scalar`, in the order (x^2 + y^2) + z^2. Rounding is monotonic, so no box is
-/// farther than a point in it: the result is that of a comparison with all points, bit by bit.
+/// Squared distances are computed in `Scalar`, in the order (x^2 + y^2) + z^2. Rounding is monotonic, so the rounded
+/// distance of a box never exceeds that of a point in it. The result is therefore bit-identical to that of a comparison
+/// with all points.
 template <typename Scalar>
 class GAUSSMAP_API NeighbourTree {
  public:
   struct Point {
     std::array<Scalar, 3> at;
-    std::uint32_t index;  ///< for the results
+    std::uint32_t index;  ///< number by which results identify the point
   };
 
   NeighbourTree() = default;
   /// The points must be finite. Doubles must be within 1e150, and there must be fewer than 2^31 points.
   explicit NeighbourTree(const std::vector<Point>& points);
 
-  /// Number of points.
+  /// Returns the number of points.
   std::size_t size() const { return size_; }
 
-  /// Adds the points within `found.limit()` to `found` (see nearest_list.h), near ones first. All distances are squared
-  /// [m^2]. The limit can shrink meanwhile. The query must be finite.
+  /// Adds the points within `found.limit()` to `found` (see nearest_list.h), visiting near boxes first. The limit and
+  /// all distances are squared [m^2]. The limit can shrink during the search. The query must be finite.
   template <typename Found>
   void search(const std::array<Scalar, 3>& query, Found& found) const {
     if (size_ == 0) return;
@@ -57,7 +58,7 @@ class GAUSSMAP_API NeighbourTree {
   struct Child {
     std::uint32_t first;
     std::uint32_t blocks : 31;
-    std::uint32_t same : 1;  ///< all points are equal, and ordered by index
+    std::uint32_t same : 1;  ///< 1: all points are equal, and sorted by index
   };
   struct Node {
     Scalar low[3][kLanes], high[3][kLanes];

@@ -22,8 +22,9 @@ struct DescentResult {
   bool converged = false;
 };
 
-/// Minimises the cost by damped Gauss-Newton (Levenberg, Marquardt). A step that raises the cost is rejected and
-/// tried shorter. `at` gives the equations at a pose. The pose does not move along the directions `held`.
+/// Minimises the cost by damped Gauss-Newton iterations (Levenberg, Marquardt). A step that raises the cost is
+/// rejected, and the next one is shorter. at(pose) returns the equations at a pose. The pose does not move along the
+/// directions `held`.
 DescentResult descend(const std::function<NormalEquations(const Pose&)>& at, const Pose& start,
                       const DescentLimits& limits, const HeldDirections& held = HeldDirections(1.0));
 

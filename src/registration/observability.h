@@ -8,7 +8,8 @@
 
 namespace gaussmap::detail {
 
-/// Directions of the pose along which a search keeps its start. N = 6 in space, 3 in the plane (x, y, heading).
+/// The directions along which a search does not move the pose: they are held. N = 6 in space, 3 in the plane (x, y,
+/// heading).
 ///
 /// To compare rotations with translations, the directions are in scaled units: x, y, z [m], then the rotation vector
 /// times the RMS range of the scan [m].
@@ -21,8 +22,8 @@ class HeldPoseDirections {
   /// Holds no direction. `range`: RMS range of the scan [m], > 0.
   explicit HeldPoseDirections(double range) : range_(range) {}
 
-  /// Holds all directions with little information, too: at most `limit` times that of the best direction.
-  /// Returns true if there is at least one that was not held before.
+  /// Also holds all free directions with little information: at most `limit` times that of the best free direction.
+  /// Returns true if at least one direction was added.
   bool hold(const PoseMatrix& information, double limit);
 
   bool isEmpty() const { return count_ == 0; }
@@ -47,7 +48,7 @@ using HeldPlanarDirections = HeldPoseDirections<3>;
 
 /// Returns the direction with the least information, as a unit vector in scaled units, see HeldPoseDirections.
 PoseDirection leastObservable(const NormalEquations::Matrix6& information, double range);
-/// The same in the plane: (x, y, heading).
+/// Returns the same in the plane: (x, y, heading).
 Eigen::Vector3d leastObservable(const Eigen::Matrix3d& information, double range);
 
 }  // namespace gaussmap::detail

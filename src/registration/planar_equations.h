@@ -8,16 +8,17 @@
 
 namespace gaussmap::detail {
 
-/// A pose in the plane, relative to the origin of a registration.
+/// A pose in the plane. Its position is relative to the origin of the registration.
 struct PlanarPose {
   Vector<2> position = Vector<2>::Zero();  ///< [m]
   double heading = 0.0;                    ///< [rad], counter-clockwise from the x axis of the map
 
+  /// Returns the rotation matrix of the heading.
   Matrix<2> rotation() const;
 };
 
-/// The cost at a planar pose and its derivatives by (x, y [m], heading about the sensor [rad]):
-/// cost = sum_i rho(d_i^2), rho(d^2) = d^2 / (1 + d^2 / k^2), as in NormalEquations.
+/// The cost at a planar pose, and its derivatives by x, y [m] and the heading about the sensor [rad]. As in
+/// NormalEquations: cost = sum_i rho(d_i^2), rho(d^2) = d^2 / (1 + d^2 / k^2).
 struct PlanarEquations {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< J' W J
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();     ///< half the derivative of the cost

@@ -16,15 +16,15 @@ struct PlanarTarget {
   Matrix<2> cov;         ///< [m^2], without blur
   Matrix<2> directions;  ///< unit axes, one per column, the thinner one first
   Vector<2> variances;   ///< along the axes [m^2], without blur
-  Vector<2> tells;       ///< weight per axis: 1 = thin; 0 = fills its cell, a shift along it is unobservable
+  Vector<2> tells;       ///< weight per axis: 1 if thin; 0 if it fills its cell, so that shifts along it are not seen
   double count;          ///< number of points
 };
 
-/// Pairs the Gaussians of a planar scan with those of one scale of a map, for any pose of the scan. Keeps references to
-/// the scan and to the map.
+/// Pairs the Gaussians of a planar scan with those of one scale of a map, for any pose of the scan. The scan and the
+/// map must live as long as this object.
 ///
-/// The candidates of a Gaussian are those in the four cells that meet at the cell corner nearest to it. They are looked
-/// up again only when the corner changes.
+/// The candidates for a Gaussian of the scan are the Gaussians in the four cells that meet at the nearest cell corner.
+/// They are looked up again only when this corner changes.
 class PlanarNeighbours {
  public:
   PlanarNeighbours(const GaussianMap<2>& map, int scale, const std::vector<Gaussian<2>>& scan, const Vector<2>& origin);
@@ -33,9 +33,9 @@ class PlanarNeighbours {
   /// [m]. Each Gaussian of the scan is paired with the one of smallest Mahalanobis distance.
   PlanarEquations linearise(const PlanarPose& pose, double blur, double kernel);
 
-  /// Returns the Gaussian of the map with the smallest Mahalanobis distance from a point [m, relative to the origin],
-  /// where Gaussian `i` of the scan is. Returns nullptr if there is none near it. The pointer is valid until the next
-  /// call.
+  /// Returns the Gaussian of the map with the smallest Mahalanobis distance from `point`. This is the place of Gaussian
+  /// `i` of the scan [m, relative to the origin]. Returns nullptr if the four cells have no Gaussian. The pointer is
+  /// valid until the next call.
   const PlanarTarget* nearest(std::size_t i, const Vector<2>& point, double blur);
 
  private:

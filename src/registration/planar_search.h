@@ -10,13 +10,14 @@
 
 namespace gaussmap::detail {
 
-/// The Gaussians that represent a planar scan, about the sensor.
+/// The Gaussians that represent a planar scan, relative to the sensor.
 struct PlanarScan {
   std::vector<Gaussian<2>> fine, coarse;  ///< `coarse` is for coarse scales of the map
   double side = 0.0;                      ///< side of the cells of `fine` [m]
   double range = 0.0;                     ///< RMS range [m]
 
-  /// Takes the Gaussians of the scales of `source` with cells of about this side, at most `most`.
+  /// `fine` comes from the scale of `source` whose cells have about this side, `coarse` from that with about four times
+  /// the side. Each has at most `most` Gaussians.
   PlanarScan(const GaussianMap<2>& source, double side, std::size_t most);
 };
 
@@ -30,8 +31,8 @@ struct PlanarFit {
 };
 
 /// Searches the pose of a scan from a start, without moving it along the held directions. One search begins at every
-/// scale of the map; that with the least cost at the end is returned. All sums are relative to
-/// `origin` [m], to keep their precision far from zero.
+/// scale of the map, and the one with the smallest final cost is returned. All coordinates are relative to `origin` [m,
+/// map frame], so that they keep their precision far from zero.
 PlanarFit searchInPlane(const PlanarScan& scan, const GaussianMap<2>& map, const PlanarPose& start,
                         const Vector<2>& origin, const HeldPlanarDirections& held, const RegistrationOptions& options);
 

@@ -9,8 +9,8 @@
 
 namespace gaussmap::detail {
 
-/// Returns the Gaussians to register: those of the scale whose cells have the side nearest to `side` [m]. It chooses at
-/// most `most` of them evenly.
+/// Returns the Gaussians to register: those of the scale whose cells have the side nearest to `side` [m] by ratio. If
+/// there are more than `most`, returns an even selection of them.
 template <int D>
 std::vector<Gaussian<D>> gaussiansOf(const GaussianMap<D>& source, double side, std::size_t most);
 

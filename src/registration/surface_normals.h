@@ -9,14 +9,14 @@
 
 namespace gaussmap::detail {
 
-/// Sums up what the normals of the map's surfaces say about the pose of a scan, in the form of
+/// Returns the information that the normals of the map's surfaces give about the pose of a scan. It has the form of
 /// NormalEquations::information, with a weight of at most 1 per Gaussian of the scan.
 ///
-/// The information of a registration also contains what only looks like information: the border of the area that was
-/// seen, the lines that a lidar draws on a plane, and the errors of normals. All of these move with the sensor, or are
-/// random. The sum of the normals leaves them out. Each Gaussian of the scan takes the normal from the finest scale of
-/// the map that has a clear one at its place: a scan with few lines gives planes only in wide cells. A large scan is
-/// represented by an even selection of its Gaussians.
+/// The information of the registration itself is too large. It also counts the border of the mapped area, the scan
+/// lines of a lidar on a plane, and the errors of normals. These move with the sensor, or are random, so they do not
+/// determine the pose. This function leaves them out. The normal of a Gaussian of the scan comes from the finest scale
+/// of the map that has a clear normal there, because a lidar with few scan lines shows planes only in wide cells. If
+/// the scan is large, an even selection of its Gaussians is used.
 ///
 /// `scales`: the neighbours of each scale, finest first, with their blur. `lines`: the scan is that of a planar laser,
 /// so its lines are surfaces. `kernel`: as in RegistrationOptions.

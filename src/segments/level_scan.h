@@ -13,11 +13,12 @@ namespace gaussmap::detail {
 /// Maximum difference of the heights of the points of a planar laser [m], because its poses may tilt a little.
 inline constexpr double kMaxPlanarHeight = 0.5;
 
-/// Returns why a scan with points from `lowest` to `highest` [m, map frame] is not that of a planar laser.
+/// Returns the message for a scan that is not that of a planar laser, because the heights of its points range from
+/// `lowest` to `highest` [m, map frame].
 std::string notPlanarText(double lowest, double highest);
 
-/// Returns a scan as a planar map sees it: the pose keeps its position in the plane and its heading, and the points
-/// keep their x and y in the map frame, with z = 0. They stay in their order. NaN points stay NaN.
+/// Returns a scan projected to the plane z = 0 of the map frame. The pose keeps its x, y and heading, and loses z and
+/// the tilt. The points keep their x and y in the map frame, and their order. NaN points stay NaN.
 ///
 /// Uses only the heights of `options`: with `slice`, points outside it become NaN. Throws std::invalid_argument if
 /// there is no `slice` and the heights of the points differ by more than kMaxPlanarHeight.
@@ -26,8 +27,8 @@ GAUSSMAP_API Scan levelled(const Scan& scan, const PlanarScanOptions& options = 
 /// Returns the beams of planarScan() as a scan with z = 0. A beam without a return is NaN.
 GAUSSMAP_API Scan scanOfBeams(const LaserScan& beams);
 
-/// Passes scans on unchanged, and checks that each is that of a planar laser. ScanReader::requireWhole() throws
-/// FileError if the heights of the points that were read differ by more than kMaxPlanarHeight.
+/// Returns scans unchanged, but checks that each is that of a planar laser. ScanReader::requireWhole() throws FileError
+/// if the heights of the points that were read differ by more than kMaxPlanarHeight.
 class GAUSSMAP_API PlanarLaserScans : public Scans {
  public:
   /// `scans` must live as long as this object.

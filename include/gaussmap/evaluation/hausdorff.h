@@ -36,8 +36,8 @@ struct HausdorffResult {
   double hausdorff() const { return forward.max > backward.max ? forward.max : backward.max; }
 };
 
-/// The distance of every single point, before they are summarised. In hausdorff(), a is the subject and b is the
-/// reference. The points of planar maps and planar clouds have z = 0.
+/// The distances of the single points, from which HausdorffResult is computed. In hausdorff(), `a` is the subject and
+/// `b` is the reference. The points of planar maps and planar clouds have z = 0.
 struct PointDistances {
   std::vector<Vector<3>> subject;  ///< points of the compared cloud, or samples of the compared map [m]
   std::vector<double> forward;     ///< per point of the subject: distance to the reference [m]
@@ -81,8 +81,9 @@ struct MapHausdorff {
 /// A reference for comparisons with maps and clouds. It is sorted once and serves any number of comparisons. It is a
 /// plain value, and copies are cheap.
 ///
-/// A reference lies in space. Planar points, samples and maps (D = 2) lie in the plane z = 0, so the distances between
-/// them are those in the plane. They can also be compared with a reference in space, for example with a mesh.
+/// All comparisons take place in space. Planar points, samples and maps (D = 2) lie in the plane z = 0, so the
+/// distances between them are those in the plane. They can also be compared with a reference in space, for example a
+/// mesh.
 class GAUSSMAP_API Reference {
  public:
   /// Makes a reference of points [m]. Throws std::invalid_argument if there are none or one is not finite; the message

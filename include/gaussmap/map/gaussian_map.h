@@ -138,8 +138,8 @@ class GAUSSMAP_API GaussianMap {
 
 /// A map in space.
 using GaussianMapOctree = GaussianMap<3>;
-/// A planar map. It lies in the plane z = 0 of the map frame: scans lose z when they are added, and everything that
-/// shows, writes or compares Gaussians in space puts them at z = 0.
+/// A planar map. It lies in the plane z = 0 of the map frame: points lose their z coordinate when they are added.
+/// Functions that show, write or compare Gaussians in space use z = 0.
 using GaussianMapQuadtree = GaussianMap<2>;
 
 /// Returns the permutation that puts the cells of one scale into key order (see MapScale). `levels` is the number of

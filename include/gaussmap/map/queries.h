@@ -62,52 +62,60 @@ GAUSSMAP_API double logLikelihood(const GaussianMap<D>& map, const Vector<D>& po
 template <int D>
 GAUSSMAP_API double logLikelihood(const GaussianMap<D>& map, const Vector<D>& point);
 
-/// The result of nearest() for one Gaussian: the Gaussian and its distance.
+/// The result of nearest() without `k`: one Gaussian of the scale that was searched.
 template <int D>
 struct NearestGaussian {
-  std::size_t index;  ///< index of the Gaussian in the given scale
+  std::size_t index;  ///< index of the Gaussian in this scale
   double distance;    ///< distance of the Gaussian's mean from the point [m]
 };
 
-/// A Gaussian that a search found.
+/// One result of a search that can return several Gaussians, or Gaussians of several scales.
 struct FoundGaussian {
-  GaussianId id;          ///< the Gaussian
-  double distance = 0.0;  ///< distance of its mean from the point [m]
+  GaussianId id;          ///< scale and index of the Gaussian
+  double distance = 0.0;  ///< distance of the Gaussian's mean from the point [m]
 };
 
-/// Returns the Gaussian of a scale whose mean is nearest to a point, at any distance, or std::nullopt if the scale is
-/// empty.
+/// Returns the Gaussian of a scale whose mean is nearest to a point [m, map frame]. Returns std::nullopt if the scale
+/// is empty.
 ///
-/// The distance is Euclidean; ties go to the smaller index. The search needs no preparation. For many queries of one
-/// map, MapSearch is faster. Throws std::out_of_range if the map does not have the scale, or if the point is not finite
-/// or out of the grid's range.
+/// The distance is Euclidean and has no limit. If several means are equally near, returns the one with the smallest
+/// index. The search needs no preparation. For many queries of one map, MapSearch is faster. Throws std::out_of_range
+/// if the map does not have the scale, or if the point is not finite or out of the grid's range.
 template <int D>
 GAUSSMAP_API std::optional<NearestGaussian<D>> nearest(const GaussianMap<D>& map, const Vector<D>& point, int scale);
 /// Returns the `k` Gaussians of a scale whose means are nearest to a point, or all if the scale has fewer. They are
-/// sorted by distance, then by index. Throws like nearest() for one Gaussian, and std::invalid_argument if `k` is
-/// negative.
+/// sorted by distance, then by index. The order of the numbers matters: `k` comes first, then `scale`.
+///
+/// Throws std::out_of_range like nearest() without `k`, and std::invalid_argument if `k` is negative.
 template <int D>
 GAUSSMAP_API std::vector<FoundGaussian> nearest(const GaussianMap<D>& map, const Vector<D>& point, int k, int scale);
 /// Returns the Gaussians of a scale whose means are at most `radius` [m] from a point, sorted by distance, then by
-/// index. Throws like nearest(), and std::invalid_argument if the radius is negative or NaN.
+/// index. Throws std::out_of_range like nearest(), and std::invalid_argument if the radius is negative or NaN.
 template <int D>
 GAUSSMAP_API std::vector<FoundGaussian> within(const GaussianMap<D>& map, const Vector<D>& point, double radius,
                                                int scale);
 
 /// Returns the `k` Gaussians of the leaves (see leaves()) whose means are nearest to a point, or all if the map has
-/// fewer. They are sorted by distance, then by scale, then by index. Throws like nearest().
+/// fewer. They are sorted by distance, then by scale (finest first), then by index.
+///
+/// Throws std::out_of_range if the point is not finite or out of the grid's range, and std::invalid_argument if `k` is
+/// negative.
 template <int D>
 GAUSSMAP_API std::vector<FoundGaussian> nearestLeaves(const GaussianMap<D>& map, const Vector<D>& point, int k);
 /// Returns the Gaussians of the leaves whose means are at most `radius` [m] from a point, in the order of
-/// nearestLeaves(). Throws like within().
+/// nearestLeaves().
+///
+/// Throws std::out_of_range if the point is not finite or out of the grid's range, and std::invalid_argument if the
+/// radius is negative or NaN.
 template <int D>
 GAUSSMAP_API std::vector<FoundGaussian> leavesWithin(const GaussianMap<D>& map, const Vector<D>& point, double radius);
 
-/// Answers many queries for the means of one scale, or of the leaves, of one map.
+/// Searches for the nearest means of one scale of a map, or of its leaves. It is made for many queries.
 ///
-/// It sorts a copy of the means first, which takes about as long as 1000 to 10,000 queries by the functions above. Each
-/// query is then two to five times as fast (`gaussmap_benchmark search`). The map may be changed or deleted
-/// afterwards. Several threads can search at the same time. Copies are cheap.
+/// The constructor copies the means and sorts them. This takes about as long as 1000 to 10,000 queries by the functions
+/// above; each query is then two to five times as fast (`gaussmap_benchmark search`). The map may be changed or deleted
+/// afterwards. Several threads can search at the same time. Copies are cheap. Distances can differ from those of the
+/// functions above by rounding.
 template <int D>
 class GAUSSMAP_API MapSearch {
  public:
@@ -118,12 +126,14 @@ class GAUSSMAP_API MapSearch {
 
   /// Returns the number of means.
   std::size_t size() const;
-  /// Returns the Gaussian whose mean is nearest to a point, or std::nullopt if there are no means. Ties go to the finer
-  /// scale, then to the smaller index. Throws std::out_of_range if the point is not finite or out of the grid's range.
+  /// Returns the Gaussian whose mean is nearest to a point [m, map frame], or std::nullopt if there are no means. If
+  /// several means are equally near, returns the one of the finest scale, and of these the one with the smallest index.
+  /// Throws std::out_of_range if the point is not finite or out of the grid's range.
   std::optional<FoundGaussian> nearest(const Vector<D>& point) const;
-  /// Returns the `k` Gaussians whose means are nearest to a point, like nearest() or nearestLeaves() of a map.
+  /// Returns the `k` Gaussians whose means are nearest to a point. Order and errors are those of nearestLeaves().
   std::vector<FoundGaussian> nearest(const Vector<D>& point, int k) const;
-  /// Returns the Gaussians whose means are at most `radius` [m] from a point, like within() or leavesWithin() of a map.
+  /// Returns the Gaussians whose means are at most `radius` [m] from a point. Order and errors are those of
+  /// leavesWithin().
   std::vector<FoundGaussian> within(const Vector<D>& point, double radius) const;
 
  private:

@@ -48,10 +48,11 @@ GaussianMapOctree buildMap(const pcl::PointCloud<PointT>& cloud, const MapOption
   return build<3>(countPoints(Grid<3>(options).options().resolution, points, threads), options);
 }
 
-/// Converts a PCL cloud of any point type with x, y, z to a scan: sensor frame, float to double without loss.
+/// Converts a PCL cloud to a scan. The points must be in the sensor frame [m]; any point type with x, y, z can be used.
 ///
-/// The pose is that in sensor_origin_ and sensor_orientation_, scaled to unit length. NaN points stay, and an organised
-/// cloud keeps its number of columns. The time [s] is header.stamp, which counts microseconds; 0 means unknown. Throws
+/// Coordinates are converted from float to double without loss. The pose is that in sensor_origin_ and
+/// sensor_orientation_, with the quaternion scaled to unit length. NaN points stay, and an organised cloud keeps its
+/// number of columns. Scan::time [s] comes from header.stamp [us]; a stamp of 0 means that the time is unknown. Throws
 /// std::invalid_argument if the pose has a fault (see poseFault()).
 template <typename PointT>
 Scan toScan(const pcl::PointCloud<PointT>& cloud) {
@@ -64,15 +65,15 @@ Scan toScan(const pcl::PointCloud<PointT>& cloud) {
   return scan;
 }
 
-/// Converts a scan to a PCL cloud of any point type with x, y, z: `toPointCloud<pcl::PointXYZ>(scan)`. All other fields
-/// have the values of a new point.
+/// Converts a scan to a PCL cloud of any point type with x, y, z, for example `toPointCloud<pcl::PointXYZ>(scan)`. The
+/// points stay in the sensor frame [m]. All other fields have the values of a new point.
 ///
-/// NaN points stay, and an organised scan stays organised. is_dense says whether all points are finite. header.stamp is
-/// the time, rounded to microseconds; a scan without a time, or with one before 0, gets 0. The points, the position and
-/// the quaternion of the sensor are rounded to floats. For points within 100 m of the sensor, the error is below 4 um.
-/// The position of a sensor far from the origin of the map is less exact: 1 mm at 16 km, 3 cm at 500 km. Keep
-/// Scan::pose beside such a cloud, and pass it to the setSensorPose() of PointCloudMapBuilder or
-/// PointCloudOnlineMapper. Throws std::invalid_argument if the number of points is not a multiple of Scan::columns.
+/// NaN points stay, and an organised scan stays organised. is_dense is true if all points are finite. header.stamp is
+/// the time, rounded to microseconds; it is 0 if the time is unknown or negative. The points and the pose of the sensor
+/// are rounded to floats. For points within 100 m of the sensor, the error is below 4 um. The error of the position of
+/// the sensor grows with its distance from the origin of the map: 1 mm at 16 km, 3 cm at 500 km. Far from the origin,
+/// pass Scan::pose to the setSensorPose() of PointCloudMapBuilder or PointCloudOnlineMapper. Throws
+/// std::invalid_argument if the number of points is not a multiple of Scan::columns.
 template <typename PointT>
 pcl::PointCloud<PointT> toPointCloud(const Scan& scan) {
   const auto columns = static_cast<std::size_t>(scan.columns > 0 ? scan.columns : 0);

@@ -29,16 +29,17 @@ struct DynamicPointsFilterOptions {
   /// ScanFrame::Map: the points are in the map frame, and sensor_origin_ is used only by UnknownSpace::Automatic.
   ScanFrame frame = ScanFrame::Sensor;
   float threshold = 0.0f;  ///< a place is free if its log-odds of occupancy are below this value
-  UnknownSpace unknown = UnknownSpace::Automatic;  ///< what happens to points where the map has no cell
-  VisibilityOptions visibility;                    ///< limits of UnknownSpace::Automatic [m]
-  int threads = 0;                                 ///< 0 = all cores
+  UnknownSpace unknown = UnknownSpace::Automatic;  ///< what is assumed of places without a cell
+  VisibilityOptions visibility;  ///< UnknownSpace::Automatic: how clearly a surface must lie behind a free place
+  int threads = 0;               ///< 0 = all cores
 };
 
-/// Removes the points of moving objects. These are the points at places that a map shows to be free, see freePoints().
+/// Removes the points of moving objects: those at places that are free in a map, see freePoints().
 ///
-/// A map of OnlineMapper forgets moving objects, so their places have no cell. By default, such a point is removed if
-/// the map has a surface clearly behind it, as seen from the sensor. Other points without a cell are kept: the map may
-/// not have seen their places. A cell of a map of build() is never free, unless `threshold` is above 10.
+/// A map of OnlineMapper forgets moving objects, so there are no cells at their places. By default, a point without a
+/// cell is removed if the map has a surface clearly behind it, as seen from the sensor, or if it is connected to such
+/// points. Other points without a cell are kept, because the map may not have seen their places. A map of build() has
+/// no occupancy, so its cells are never free, unless `threshold` is above kMaxOccupancy.
 ///
 /// Indices, setNegative(), removed indices, setKeepOrganized() and setUserFilterValue() work as in pcl::PassThrough.
 /// Non-finite points are always removed. Any point type with x, y, z can be used. Without a map, or if the pose is not
@@ -56,8 +57,8 @@ class GAUSSMAP_API DynamicPointsFilter : public pcl::FilterIndices<PointT> {
     this->filter_name_ = "DynamicPointsFilter";
   }
 
-  /// Sets the map. Prints a warning if the map has no occupancy. Its cells are then never free: it still contains all
-  /// moving objects of its scans, unless they were removed from the scans before.
+  /// Sets the map. Prints a warning if the map has no occupancy, because its cells are then never free. Such a map
+  /// still contains all moving objects of its scans, unless their points were removed before it was built.
   void setMap(MapConstPtr map) {
     map_ = std::move(map);
     if (map_ && !map_->empty() && !map_->hasOccupancy())
@@ -72,7 +73,7 @@ class GAUSSMAP_API DynamicPointsFilter : public pcl::FilterIndices<PointT> {
   void setFrame(ScanFrame frame) { options_.frame = frame; }
   /// Sets the log-odds below which a place is free.
   void setThreshold(float log_odds) { options_.threshold = log_odds; }
-  /// Sets what happens to points where the map has no cell.
+  /// Sets what is assumed of places where the map has no cell.
   void setUnknownSpace(UnknownSpace unknown) { options_.unknown = unknown; }
   /// Sets the number of threads; 0 = all cores.
   void setNumberOfThreads(int threads) { options_.threads = threads; }
@@ -98,7 +99,8 @@ class GAUSSMAP_API DynamicPointsFilter : public pcl::FilterIndices<PointT> {
   }
 
  private:
-  /// Sets one flag per selected point. Prints an error and returns false if there is no map or no valid pose.
+  /// Fills `free` with one flag per selected point. Prints an error and returns false if there is no map or no valid
+  /// pose.
   bool findFree(std::vector<bool>& free) const {
     try {
       if (!map_) throw std::invalid_argument("no map: call setMap()");

@@ -24,8 +24,8 @@ enum class FilterOutput {
 
 /// How GaussianMapFilter groups the points.
 enum class FilterMethod {
-  Map,   ///< thinPoints(): sums of points in the cells of a Gaussian map, and merges of near cells
-  Split  ///< splitPoints(): splits the cloud and moves points to the nearest mean; slower, no map
+  Map,   ///< thinPoints(): sums the points in cells and merges near cells; gives a map
+  Split  ///< splitPoints(): splits the cloud and moves points to the nearest mean; slower, gives no map
 };
 
 /// Options of GaussianMapFilter.
@@ -33,8 +33,8 @@ struct GaussianMapFilterOptions {
   /// Maximum number of points kept, >= 1. Without a value, it is 10,000 if neither an error nor a leaf size limits the
   /// number of points.
   std::optional<std::size_t> budget;
-  /// If > 0: keeps a small number of points for which 95 % of the input lie within this distance of their output point
-  /// [m]. If 0: keeps as many points as the budget allows.
+  /// If > 0: keeps as few points as possible so that 95 % of the input points lie within this distance [m] of their
+  /// output points. If 0: keeps as many points as the budget allows.
   double max_error = 0.0;
   /// If > 0: side of the finest cells of the map [m], FilterMethod::Map only. Without a budget and an error, each
   /// occupied cell of `scale` gives one point, as with pcl::VoxelGrid. If 0: chosen from budget and error.
@@ -47,7 +47,7 @@ struct GaussianMapFilterOptions {
   /// the plane through the output point.
   SplitRule detail = SplitRule::Distance;
   int rounds = 3;   ///< FilterMethod::Split and SplitRule::Distance only: rounds of k-means after the splitting, >= 0
-  int threads = 0;  ///< 0 = all cores
+  int threads = 0;  ///< 0 = all cores; FilterMethod::Map uses them only for normals
 };
 
 /// Downsamples a cloud with a Gaussian map: to a maximum number of points, to an error limit, or to the Gaussians of a
@@ -56,7 +56,7 @@ struct GaussianMapFilterOptions {
 /// With FilterMethod::Map (default), the points are summed in the cells of a map, and near cells are merged (see
 /// thinPoints()). getMap() returns the map.
 ///
-/// Each output point represents the Gaussian of some input points.
+/// Each output point represents one Gaussian, and each Gaussian represents some input points.
 /// - With FilterOutput::Means, all other fields are averaged over these points: colours by channel, integers rounded,
 ///   normals by direction, non-finite values ignored. A label is that of the point nearest to the mean.
 /// - With FilterOutput::Samples, output points are unchanged input points.
@@ -115,8 +115,8 @@ class GAUSSMAP_API GaussianMapFilter : public pcl::Filter<PointT> {
   /// Returns the error of the last filter(): 95 % of the input lie within this distance of their output point [m]. With
   /// SplitRule::Shape, the distance is that from the plane through this point.
   double error() const { return error_; }
-  /// Returns the map of the last filter(), see ThinnedPoints::map(). Its scale 0 has the cells with their exact
-  /// moments, its scale 1 the Gaussians of the output. The map is made by this call. It is empty if FilterMethod::Split
+  /// Returns the map of the last filter(), see ThinnedPoints::map(). Scale 0 has the cells with their exact moments,
+  /// and scale 1 has the Gaussians of the output. Each call builds the map again. It is empty if FilterMethod::Split
   /// was used or if nothing was filtered.
   GaussianMapOctree getMap() const { return cells_.map(); }
 

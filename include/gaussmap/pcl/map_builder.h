@@ -20,15 +20,17 @@
 
 namespace gaussmap {
 
-/// Fills a map from PCL clouds, one after the other. It is used like pcl::octree::OctreePointCloud: for each cloud,
-/// call setInputCloud() and addPointsFromInputCloud(); at the end, or at any time, call getMap().
+/// Builds a map from several PCL clouds. It is used like pcl::octree::OctreePointCloud: for each cloud, call
+/// setInputCloud() and addPointsFromInputCloud(). Call getMap() at the end, or at any time.
 ///
-/// The class adds the points to exact sums per cell, so filling a map cloud by cloud costs no more than building it at
-/// once, and the map is the same for any order and any division of the points. setIndices() selects points; PCL keeps
-/// the indices for the following clouds too. The pose in sensor_origin_ and sensor_orientation_, or that of
-/// setSensorPose(), moves the points into the map frame; setFrame(ScanFrame::Map) is for points that are there already.
-/// Non-finite points are ignored, and with ScanFrame::Sensor also points at the sensor (see isReturn()). Any point type
-/// with x, y, z can be used. Errors are printed and change nothing.
+/// The class keeps exact moments per cell. The map is therefore the same for any order of the clouds and for any
+/// division of the points into clouds, and adding them one by one takes no longer than adding them at once.
+///
+/// setIndices() selects points; as in PCL, the indices stay set for the following clouds. The pose of setSensorPose(),
+/// or otherwise that in sensor_origin_ and sensor_orientation_, transforms the points into the map frame. If they are
+/// already in the map frame, call setFrame(ScanFrame::Map). Non-finite points are ignored. With ScanFrame::Sensor,
+/// points at the sensor are ignored too (see isReturn()). Any point type with x, y, z can be used. Errors are printed
+/// and change nothing.
 template <typename PointT>
 class PointCloudMapBuilder : public detail::CloudInput<PointT> {
  public:
@@ -40,8 +42,8 @@ class PointCloudMapBuilder : public detail::CloudInput<PointT> {
   explicit PointCloudMapBuilder(const MapOptions& options = {})
       : grid_(options), moments_(grid_.options().resolution) {}
 
-  /// Adds the points of the input cloud and returns their number. Returns 0 if there is no cloud, the pose has a fault,
-  /// or a point lies beyond the range of 32-bit cell indices.
+  /// Adds the points of the input cloud and returns the number of points added. Prints an error, adds nothing and
+  /// returns 0 if there is no cloud, the pose has a fault, or a point lies beyond the range of 32-bit cell indices.
   std::size_t addPointsFromInputCloud() {
     if (!this->initCompute()) {
       PCL_ERROR("[gaussmap::PointCloudMapBuilder::addPointsFromInputCloud] no input cloud\n");
@@ -58,13 +60,13 @@ class PointCloudMapBuilder : public detail::CloudInput<PointT> {
     return added;
   }
 
-  /// Returns the map of all points so far, with one Gaussian per cell at every scale. It is built when it is asked for,
-  /// and again only after new points. Pass it to refine() to give coarse cells more Gaussians.
+  /// Returns the map of all points so far, with one Gaussian per cell at every scale. The first call after new points
+  /// builds the map, so calls must not overlap. Pass the map to refine() to give coarse cells more Gaussians.
   MapConstPtr getMap() const {
     if (!map_) map_ = std::make_shared<const GaussianMapOctree>(build<3>(moments_, grid_.options()));
     return map_;
   }
-  /// Returns the exact sums of the points per cell.
+  /// Returns the exact moments per cell, map frame.
   const MomentGrid<3>& moments() const { return moments_; }
   /// Removes all points.
   void deleteMap() {
@@ -75,8 +77,8 @@ class PointCloudMapBuilder : public detail::CloudInput<PointT> {
   const MapOptions& options() const { return grid_.options(); }
 
  private:
-  /// Throws std::out_of_range if the index of the cell of a selected point does not fit 32 bits. So a cloud is added as
-  /// a whole or not at all.
+  /// Throws std::out_of_range if the index of the cell of a selected point does not fit 32 bits. This check comes
+  /// first, so that a cloud is added as a whole or not at all.
   void checkRange(const Pose& pose) const {
     const double limit = 1e9 * moments_.resolution();  // below this, every index fits
     float largest = 0.0f;
@@ -119,7 +121,7 @@ class PointCloudMapBuilder : public detail::CloudInput<PointT> {
 
   Grid<3> grid_;
   MomentGrid<3> moments_;
-  mutable MapConstPtr map_;  // null: not built since the last points
+  mutable MapConstPtr map_;  // null: not yet built with the last points
 };
 
 }  // namespace gaussmap

@@ -21,13 +21,13 @@
 
 namespace gaussmap {
 
-/// Builds a map scan by scan from PCL clouds with OnlineMapper, and forgets objects that have moved away.
+/// Builds a map scan by scan from PCL clouds with OnlineMapper, which forgets objects that have moved away.
 ///
-/// For each cloud, call setInputCloud() and update(); getMap() returns the map at any time. The pose of the sensor is
+/// For each cloud, call setInputCloud() and update(). getMap() returns the map at any time. The pose of the sensor is
 /// that of setSensorPose(), or otherwise that in sensor_origin_ and sensor_orientation_ of each cloud. The points are
-/// in the sensor frame, unless setFrame(ScanFrame::Map) was called. An organised cloud of a depth camera keeps its rows
-/// and columns; NaN points and points that setIndices() does not select are pixels without a return. Any point type
-/// with x, y, z can be used. Errors are printed and change nothing.
+/// in the sensor frame, unless setFrame(ScanFrame::Map) was called. In an organised cloud, for example of a depth
+/// camera, each point is a pixel. NaN points and points that setIndices() does not select are pixels without a return.
+/// Any point type with x, y, z can be used. Errors are printed and change nothing.
 template <typename PointT>
 class PointCloudOnlineMapper : public detail::CloudInput<PointT> {
  public:
@@ -40,17 +40,17 @@ class PointCloudOnlineMapper : public detail::CloudInput<PointT> {
   explicit PointCloudOnlineMapper(const OnlineOptions& options = {}, Removed removed = {})
       : options_(options), removed_(std::move(removed)) {}
 
-  /// Sets the side of the finest cells [m]. As all options, it applies to maps that begin after it: before the first
-  /// update(), or after reset().
+  /// Sets the side of the finest cells [m]. Like all options, it has no effect on a map that was already begun: set it
+  /// before the first update(), or call reset().
   void setResolution(double side) { options_.map.resolution = side; }
-  /// Sets all options.
+  /// Sets all options, with effect as for setResolution().
   void setOptions(const OnlineOptions& options) { options_ = options; }
   /// Returns the options.
   const OnlineOptions& options() const { return options_; }
 
-  /// Adds the input cloud to the map. Returns false if there is no cloud, an option or the pose has a fault, or a point
-  /// lies beyond the range of 32-bit cell indices. The map is then unchanged. A cloud without points counts as a scan
-  /// in which no beam returned.
+  /// Adds the input cloud to the map and returns true. Prints an error and returns false if there is no cloud, an
+  /// option or the pose has a fault, or a point lies beyond the range of 32-bit cell indices. The map is then
+  /// unchanged. A cloud without points counts as a scan in which no beam returned.
   bool update() {
     statistics_ = {};
     if (!this->initCompute()) {
@@ -71,7 +71,8 @@ class PointCloudOnlineMapper : public detail::CloudInput<PointT> {
     return added;
   }
 
-  /// Returns the current map. It is copied when it is asked for, and again only after an update().
+  /// Returns a copy of the current map. Only the first call after an update() makes the copy, so calls must not
+  /// overlap.
   MapConstPtr getMap() const {
     if (!map_) map_ = std::make_shared<const GaussianMapOctree>(mapper_ ? mapper_->map() : GaussianMapOctree());
     return map_;
@@ -80,8 +81,8 @@ class PointCloudOnlineMapper : public detail::CloudInput<PointT> {
   const OnlineStatistics& getStatistics() const { return statistics_; }
   /// Returns the number of scans in the map.
   std::size_t scans() const { return mapper_ ? mapper_->scans() : 0; }
-  /// Puts a deleted cluster of the finest scale back, see OnlineMapper::restore(). Returns false if there is no map or
-  /// the cluster is of another scale.
+  /// Puts a deleted cluster of the finest scale back, see OnlineMapper::restore(). Prints an error and returns false if
+  /// there is no map or the cluster is of another scale.
   bool restore(const RemovedCluster<3>& removed) {
     if (!mapper_ || removed.scale != 0) {
       PCL_ERROR("[gaussmap::PointCloudOnlineMapper::restore] %s\n", mapper_ ? "not a finest cluster" : "no map");
@@ -91,7 +92,7 @@ class PointCloudOnlineMapper : public detail::CloudInput<PointT> {
     map_.reset();
     return true;
   }
-  /// Begins an empty map.
+  /// Deletes the map. The next update() begins a new one.
   void reset() {
     mapper_.reset();
     map_.reset();

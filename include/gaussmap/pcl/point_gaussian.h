@@ -20,9 +20,9 @@ namespace gaussmap {
 #pragma GCC diagnostic ignored "-Wpedantic"
 
 /// One Gaussian of a map as a PCL point. x y z is the mean, so any PCL tool can show and filter the cloud. The fields
-/// are those of the PCD files of savePcd(). The library gaussmap::pcl contains the common class templates of PCL for
-/// this type: the search classes, the octrees, and most filters (docs/pcl.md lists them). For other templates of PCL,
-/// define PCL_NO_PRECOMPILE before the first PCL header, as for any own point type.
+/// are those of the PCD files of savePcd(). The library gaussmap::pcl instantiates the common class templates of PCL
+/// for this type: the search classes, the octrees, and most filters (docs/pcl.md lists them). For other templates of
+/// PCL, define PCL_NO_PRECOMPILE before the first PCL header, as for any point type of your own.
 struct EIGEN_ALIGN16 PointGaussian {
   PCL_ADD_POINT4D;      ///< mean [m]
   float covariance[6];  ///< xx xy xz yy yz zz [m^2]

@@ -33,14 +33,14 @@ class LazyKdTree : public pcl::search::KdTree<PointT> {
     made_ = false;
   }
 
-  /// Searches the `k` nearest neighbours of a point, as in PCL.
+  /// Finds the `k` nearest neighbours of a point, as in PCL.
   int nearestKSearch(const PointT& point, int k, pcl::Indices& indices, std::vector<float>& squared) const override {
     if (make(point)) return Base::nearestKSearch(point, k, indices, squared);
     indices.assign(1, 0);
     squared.assign(1, std::numeric_limits<float>::infinity());
     return 0;
   }
-  /// Searches all neighbours of a point within `radius` [m], as in PCL.
+  /// Finds all neighbours of a point within `radius` [m], or at most `most` of them if `most` > 0, as in PCL.
   int radiusSearch(const PointT& point, double radius, pcl::Indices& indices, std::vector<float>& squared,
                    unsigned int most = 0) const override {
     if (make(point)) return Base::radiusSearch(point, radius, indices, squared, most);
@@ -65,9 +65,9 @@ class LazyKdTree : public pcl::search::KdTree<PointT> {
 
 /// Options of GaussianMapRegistration.
 struct GaussianMapRegistrationOptions {
-  MapOptions map{0.5, 3, 4, 0.0};    ///< of the map that is built from a target cloud
-  double budget = 3.0;               ///< maximum average of Gaussians per cell of its coarse scales, see PerCell
-  RegistrationOptions registration;  ///< of registerScan()
+  MapOptions map{0.5, 3, 4, 0.0};    ///< options of the map that is built from a target cloud
+  double budget = 3.0;               ///< maximum mean number of Gaussians per cell of its coarse scales, see PerCell
+  RegistrationOptions registration;  ///< options of registerScan()
 };
 
 /// Registers a cloud to a map with registerScan(). It is used like pcl::NormalDistributionsTransform.
@@ -75,16 +75,16 @@ struct GaussianMapRegistrationOptions {
 /// The target is a cloud, from which a map is built once, or an existing map. Any point type with x, y, z can be used;
 /// normals and covariances are not needed.
 ///
-/// As with PCL's own classes, non-finite points are ignored, and setIndices() selects points of the source. Errors are
-/// printed, and hasConverged() is then false; final transformation and output are those of the guess.
+/// As with PCL's own classes, non-finite points are ignored, and setIndices() selects points of the source. After an
+/// error, which is printed, hasConverged() is false, and the final transformation is the guess.
 ///
 /// The registration works in steps, from coarse to fine, and these settings apply to each step:
 /// - setMaximumIterations(). If the last step reaches this limit, hasConverged() is false, unlike in PCL's classes.
 /// - setTransformationEpsilon() and setTransformationRotationEpsilon(), with the meaning that they have in
-///   pcl::NormalDistributionsTransform. A step ends when the squared length of the last shift [m^2] is at most the
-///   first one, and the cosine of the last turn is at least the second one. If one of the two is 0 or less, only the
-///   other one counts. If both are, a step ends at the limit of iterations, or when the pose no longer improves. Steps
-///   before the last one can end at larger changes.
+///   pcl::NormalDistributionsTransform. A step ends when the squared length of the last translation [m^2] is at most
+///   the first value, and the cosine of the angle of the last rotation is at least the second value. If one of the two
+///   values is 0 or less, only the other one counts. If both are 0 or less, a step ends at the limit of iterations, or
+///   when the pose no longer improves. Steps before the last one can end at larger changes.
 ///
 /// The constructor sets all three from the RegistrationOptions; the setters replace these values. PCL's settings of
 /// correspondences have no effect. getLastIncrementalTransformation() is the motion from the guess to the result. The
@@ -132,8 +132,8 @@ class GAUSSMAP_API GaussianMapRegistration : public pcl::Registration<PointSourc
   /// than getMaximumIterations(), which is the limit per step.
   int getFinalNumIteration() const { return this->nr_iterations_; }
   /// Returns the covariance of the pose: translation x y z [m], then rotation vector about the origin of the source
-  /// [rad], along the axes of the target. Unobservable directions have a large variance, see RegistrationResult. Zero
-  /// does not mean "exact": there is no information about the pose.
+  /// [rad], along the axes of the target. Unobservable directions have a large variance, see RegistrationResult. A zero
+  /// matrix does not mean that the pose is exact, but that there is no information about it.
   const PoseCovariance& getPoseCovariance() const { return result_.covariance; }
   /// Returns true if some direction of the pose is unobservable, for example along a corridor, or if there is no
   /// result.

@@ -26,9 +26,9 @@ namespace detail {
 class GAUSSMAP_API CloudSearch {
  public:
   CloudSearch() = default;
-  /// Sorts the finite points; `indices`: those to use, null: all.
+  /// Sorts the finite points. `indices`: the points to use; null: all.
   CloudSearch(const PointsView& points, const pcl::Indices* indices);
-  /// `point`: x, y, z. The functions return the number of points found. They find nothing if the query is not finite.
+  /// Both functions return the number of points found, which is 0 if the query is not finite. `point`: x, y, z.
   int nearest(const float* point, int k, pcl::Indices& indices, std::vector<float>& squares) const;
   int within(const float* point, double radius, unsigned max_count, bool sorted, pcl::Indices& indices,
              std::vector<float>& squares) const;
@@ -38,7 +38,7 @@ class GAUSSMAP_API CloudSearch {
   std::shared_ptr<const Tree> tree_;
 };
 
-/// The means of the leaves of a map, or of one scale, relative to `origin` [m]; and their Gaussians.
+/// The means of one scale of a map, or of its leaves, relative to `origin` [m, map frame], and their GaussianIds.
 struct GAUSSMAP_API MapMeans {
   MapMeans(const GaussianMapOctree& map, std::optional<int> scale);
   std::vector<GaussianId> ids;
@@ -52,18 +52,19 @@ struct GAUSSMAP_API MapMeans {
 /// Searches for neighbours in a cloud, or among the Gaussians of a map. It can be used wherever PCL takes a
 /// pcl::search::Search, for example with pcl::NormalEstimation or pcl::EuclideanClusterExtraction.
 ///
-/// The points are sorted into cells that are divided again and again, as in a map of ratio 2. Construction and queries
-/// take about half the time of a pcl::search::KdTree (`gaussmap_benchmark search` compares them). PointT can be any
-/// point type with x, y, z.
+/// The points are sorted along a space-filling curve, under a tree of bounding boxes. Construction and queries take
+/// about half the time of a pcl::search::KdTree (`gaussmap_benchmark search` compares them). PointT can be any point
+/// type with x, y, z.
 ///
-/// Results are those of a comparison with all points: distances are computed in floats, and ties go to the smaller
-/// index. The neighbours of nearestKSearch() are sorted, and those of radiusSearch() are too unless
-/// setSortedResults(false) was called. A radius includes its border (as in pcl::search::BruteForce and Octree; a
-/// pcl::search::KdTree excludes it); a radius of 0 finds nothing. With `max_nn`, radiusSearch() returns the nearest
-/// ones, as KdTree does. Points that are not finite are never found. A query that is not finite finds nothing and
-/// returns 0, also in debug builds, where PCL's own classes stop the program.
-///
-/// Several threads can search at the same time.
+/// - The results are exact: they are the same as those of a comparison with all points. Distances are computed in
+///   floats. Points at equal distances are ordered by index.
+/// - nearestKSearch() sorts its results by distance. So does radiusSearch(), unless setSortedResults(false) was called.
+/// - radiusSearch() includes points at exactly the radius, like pcl::search::BruteForce and pcl::search::Octree, but
+///   unlike pcl::search::KdTree. A radius of 0 finds nothing. If more than `max_nn` points are within the radius, it
+///   returns the nearest of them, like KdTree.
+/// - Points that are not finite are never found. A query that is not finite finds nothing and returns 0, also in debug
+///   builds, where PCL's own classes stop the program.
+/// - Several threads can search at the same time.
 template <typename PointT>
 class GAUSSMAP_API GaussianMapSearch : public pcl::search::Search<PointT> {
   using Base = pcl::search::Search<PointT>;
@@ -74,7 +75,7 @@ class GAUSSMAP_API GaussianMapSearch : public pcl::search::Search<PointT> {
   using PointCloud = typename Base::PointCloud;                  ///< the searched points
   using PointCloudConstPtr = typename Base::PointCloudConstPtr;  ///< shared pointer to the searched points
   using IndicesConstPtr = typename Base::IndicesConstPtr;        ///< shared pointer to indices
-  /// The result of setInputCloud(): void, or bool in newer versions of PCL.
+  /// Return type of setInputCloud(): void, or bool in newer versions of PCL.
   using Accepted = decltype(std::declval<Base&>().setInputCloud(std::declval<const PointCloudConstPtr&>(),
                                                                 std::declval<const IndicesConstPtr&>()));
 
@@ -84,19 +85,20 @@ class GAUSSMAP_API GaussianMapSearch : public pcl::search::Search<PointT> {
   /// Makes a search without points.
   explicit GaussianMapSearch(bool sorted = true) : Base("GaussianMapSearch", sorted) {}
 
-  /// Sets the cloud to search. With `indices`, only these points are searched; results are indices of the cloud.
+  /// Sets the cloud to search. With `indices`, only these points are searched. Results are always indices of the cloud.
   Accepted setInputCloud(const PointCloudConstPtr& cloud, const IndicesConstPtr& indices = IndicesConstPtr()) override {
     setPoints(cloud, indices);
     gaussians_.clear();
     return static_cast<Accepted>(cloud != nullptr);
   }
 
-  /// Sets the Gaussians of a map to search: those of one scale, or of the leaves (see leaves()). The search uses their
-  /// means. The map may be changed or deleted afterwards.
+  /// Sets the Gaussians to search: those of one scale of a map, or of its leaves (see leaves()). The search uses copies
+  /// of their means, so the map may be changed or deleted afterwards.
   ///
-  /// getInputCloud() returns the means as a cloud. PointGaussian gets all fields, other point types get x, y, z. As in
-  /// toPointCloud(), the means are relative to the cloud's sensor_origin_, which is zero unless the map is far from the
-  /// origin; queries must be relative to it too. Throws std::out_of_range if the map does not have the scale.
+  /// getInputCloud() returns the means as a cloud. If PointT is PointGaussian, all fields are set; otherwise only x, y
+  /// and z. As in toPointCloud(), the means are relative to the cloud's sensor_origin_, and so must be the queries. The
+  /// origin is zero unless the map is far from the origin of the map frame. Throws std::out_of_range if the map does
+  /// not have the scale.
   void setInputMap(const GaussianMapOctree& map, std::optional<int> scale = std::nullopt) {
     detail::MapMeans means(map, scale);
     auto cloud = pcl::make_shared<PointCloud>();
@@ -110,7 +112,7 @@ class GAUSSMAP_API GaussianMapSearch : public pcl::search::Search<PointT> {
     setPoints(cloud, nullptr);
     gaussians_ = std::move(means.ids);
   }
-  /// Returns per point of getInputCloud() its Gaussian in the map of setInputMap(). Empty after setInputCloud().
+  /// Returns, per point of getInputCloud(), the Gaussian of the map from which it comes. Empty after setInputCloud().
   const std::vector<GaussianId>& getGaussians() const { return gaussians_; }
 
   /// Finds the `k` nearest points, or all if there are fewer. Returns their number.

@@ -27,8 +27,8 @@ struct RegistrationOptions {
   /// factor.
   double translation = 5e-4;
   double rotation = 5e-5;  ///< limit of the turn, see `translation` [rad], > 0
-  /// A direction of the pose is unobservable if the surfaces of the map constrain it at most this many times as well as
-  /// the best direction, >= 0. See RegistrationResult::degenerate.
+  /// A direction of the pose is unobservable if the surfaces of the map give at most this share of the information that
+  /// they give about the best direction, >= 0. See RegistrationResult::degenerate.
   double degenerate = 0.003;
   int threads = 0;  ///< 0 = all cores
 };
@@ -40,8 +40,8 @@ struct GAUSSMAP_API RegistrationResult {
   /// It is symmetric positive definite, or zero if the map gives no information about the pose.
   ///
   /// Along an unobservable direction, the standard deviation is 1 rad for a rotation, and the RMS range of the scan for
-  /// a translation [m]. So the matrix can be inverted, for example as a factor of a pose graph. Along this direction,
-  /// such a factor says nearly nothing, and other sensors decide.
+  /// a translation [m]. The matrix can therefore be inverted, for example for a factor of a pose graph. Such a factor
+  /// has almost no influence along this direction.
   PoseCovariance covariance = PoseCovariance::Zero();
   /// The direction in which the surfaces of the map constrain the pose least: a unit vector of (x, y, z, rotation
   /// vector times the RMS range of the scan). It is zero if the map gives no information about the pose.
@@ -49,8 +49,9 @@ struct GAUSSMAP_API RegistrationResult {
   double fitness = 0.0;       ///< share of the scan's Gaussians within 3 standard deviations of a map Gaussian
   double mean_squared = 0.0;  ///< mean squared Mahalanobis distance of these Gaussians
   int iterations = 0;         ///< number of iterations of all steps together
-  /// True: the last step ended because the pose no longer moved or improved. False: it stopped at the limit of
-  /// iterations, or the map gives no information about the pose, and `pose` is the guess.
+  /// True: the last step ended because the pose no longer moved or improved. False: the last step reached
+  /// RegistrationOptions::max_iterations, or the map gives no information about the pose. In the second case, `pose` is
+  /// the guess.
   bool converged = false;
   /// True: some direction is unobservable (along a corridor, on a plain), see `least_observable`. Along all such
   /// directions, `pose` keeps the guess.
@@ -67,10 +68,10 @@ struct GAUSSMAP_API RegistrationResult {
 /// constrain the pose along directions in which it fills its cell. At the finest scale, a map Gaussian constrains the
 /// pose mainly along its thinnest direction.
 ///
-/// At the end, the normals of the surfaces on which the scan lies say which directions of the pose are unobservable. If
-/// there are any, the registration starts again, and the pose keeps the guess along them. The borders of the seen area
-/// and the lines that a lidar draws on a plane do not count as information. If fewer than three Gaussians of the scan
-/// meet the map, or none of them meets a surface, the result is the guess.
+/// At the end, the normals of the surfaces on which the scan lies show which directions of the pose are unobservable.
+/// If there are any, the registration starts again from the guess and does not move the pose along them. The borders of
+/// the mapped area and the scan lines of a lidar on a plane do not count as information. If fewer than three Gaussians
+/// of the scan have a match in the map, or no match is a surface, the result is the guess.
 ///
 /// `points` are in the scan frame [m]; non-finite points are ignored. Throws std::invalid_argument if an option is out
 /// of range (the message names it), the map is empty, or the guess has a fault (see poseFault()).
@@ -86,20 +87,23 @@ GAUSSMAP_API RegistrationResult registerMap(const GaussianMap<3>& source, const 
 
 /// Registers a scan to a planar map: refines x, y and the heading of the guess.
 ///
-/// It works like registerScan() in space, in the plane. One search begins at every scale of the map; the one with the
-/// least cost at the finest scale is the result. `points` are in the scan frame [m]; non-finite points are
-/// ignored. The tilt of the guess (roll and pitch) is applied to them, and then they lose their height; to register a
-/// slice of a scan in space, give only the points of the slice. The pose of the result has exactly the z and the tilt
-/// of the guess: a guess with a rotation about z gives a rotation about z. In the covariance and in
-/// RegistrationResult::least_observable, the rows and columns of z and of the rotations about x and y are zero.
-/// RegistrationResult::degenerate judges only x, y and the heading, by the normals of the walls.
-/// RegistrationOptions::threads is not used. Throws like registerScan() in space.
+/// It works like registerScan() in space, with these differences:
+/// - One search starts at each scale of the map. The result is the search with the smallest cost at the finest scale.
+/// - `points` are in the scan frame [m]; non-finite points are ignored. The tilt of the guess (roll and pitch) is
+///   applied to the points, and then they lose their height. To register a slice of a 3-D scan, pass only the points of
+///   the slice.
+/// - The result keeps z and the tilt of the guess. If the guess is a rotation about z, so is the result.
+/// - In RegistrationResult::covariance and RegistrationResult::least_observable, the entries of z and of the rotations
+///   about x and y are zero. RegistrationResult::degenerate is true if x, y or the heading is unobservable.
+/// - RegistrationOptions::threads is not used.
+///
+/// Throws like registerScan() in space.
 GAUSSMAP_API RegistrationResult registerScan(const std::vector<Eigen::Vector3d>& points, const GaussianMap<2>& map,
                                              const Pose& guess = {}, const RegistrationOptions& options = {});
 
 /// Registers the planar map `source` to the planar map `map`. It works like registerScan() in the plane, with the
-/// Gaussians of `source` as in registerMap() in space. Also throws std::invalid_argument if the guess is not planar
-/// (z = 0, rotation about z), so the result is a motion for transformMap().
+/// Gaussians of `source` as in registerMap() in space. It also throws std::invalid_argument if the guess is not planar
+/// (z = 0, rotation about z). The resulting pose is therefore planar, and transformMap() accepts it.
 GAUSSMAP_API RegistrationResult registerMap(const GaussianMap<2>& source, const GaussianMap<2>& map,
                                             const Pose& guess = {}, const RegistrationOptions& options = {});
 

@@ -10,15 +10,16 @@
 
 namespace gaussmap::detail {
 
-/// Returns true if a text starts like a log of CARMEN: its first line that is not empty is a message, such as "FLASER
-/// 180 ...", or the comment that lists the messages. `start` can end anywhere.
+/// Returns true if a text starts like a log of CARMEN. `start` is the beginning of the text and can end anywhere. The
+/// first line that is neither empty nor a comment must be a message, such as "FLASER 180 ...". Or a line before it is
+/// the comment "# message formats defined".
 GAUSSMAP_API bool isCarmenText(std::string_view start);
 
 /// Opens a log of CARMEN, plain or gzip, as a file with one scan per sweep of the laser, see readCarmenLog().
 ///
 /// Each beam is a point [m] in the sensor frame with z = 0; a beam without a return is NaN. The poses are those of the
-/// laser in the log. If neighbouring sweeps have the same time, the times are too coarse to tell sweeps apart, and no
-/// scan has a time. Damaged lines give warnings. Throws FileError like readCarmenLog().
+/// laser in the log. If any sweep has no time, or the same time as the sweep before it, no scan has a time: the times
+/// are too coarse to order the sweeps. Damaged lines give warnings. Throws FileError like readCarmenLog().
 GAUSSMAP_API std::unique_ptr<ScanFile> openCarmenScans(const std::filesystem::path& path);
 
 }  // namespace gaussmap::detail

@@ -15,8 +15,8 @@ namespace gaussmap::detail {
 /// Fields: x y z (doubles, map frame) covariance[6] weight scale cell_x cell_y cell_z log_odds hits misses first_hit
 /// last_hit deleted_after, then count sum[3] product[6]. first_hit, last_hit and deleted_after are numbers of scans,
 /// counted from 0. The last three fields are the CellMoments; they are 0 if the cluster has no exact moments. Clusters
-/// of a planar map (D = 2) lie in the plane z = 0, and are as thick across it as they are thin. Throws FileError if the
-/// file cannot be written.
+/// of a planar map (D = 2) lie in the plane z = 0. Their variance across the plane is their smaller variance in it.
+/// Throws FileError if the file cannot be written.
 template <int D = 3>
 GAUSSMAP_API void writeRemoved(const std::filesystem::path& path, const std::vector<RemovedCluster<D>>& removed);
 

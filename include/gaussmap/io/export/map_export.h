@@ -74,12 +74,14 @@ GAUSSMAP_API std::size_t saveVtp(const std::filesystem::path& path, const Gaussi
 GAUSSMAP_API std::size_t saveCsv(const std::filesystem::path& path, const GaussianMap<3>& map,
                                  std::optional<int> scale = std::nullopt);
 
-/// These functions write a planar map like a map in space. All means have z = 0, and the standard deviation across the
-/// plane is MapOptions::noise.
+/// Writes a planar map like a map in space, see savePly() above. All means have z = 0, and the standard deviation
+/// across the plane is MapOptions::noise.
 GAUSSMAP_API std::size_t savePly(const std::filesystem::path& path, const GaussianMap<2>& map,
                                  const GaussianPlyOptions& options = {});
+/// Writes a planar map like a map in space, with the same z and standard deviation as savePly().
 GAUSSMAP_API std::size_t saveVtp(const std::filesystem::path& path, const GaussianMap<2>& map,
                                  std::optional<int> scale = std::nullopt);
+/// Writes a planar map like a map in space, with the same z and standard deviation as savePly().
 GAUSSMAP_API std::size_t saveCsv(const std::filesystem::path& path, const GaussianMap<2>& map,
                                  std::optional<int> scale = std::nullopt);
 

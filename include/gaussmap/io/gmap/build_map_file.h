@@ -36,7 +36,7 @@ struct BuiltMapFile {
 /// Builds a map file from scans in limited memory, for maps that do not fit into memory.
 ///
 /// The file is bit-identical to the result of accumulateScans(), build(), refine() and save() with the same options and
-/// metadata. For D = 2, it holds a planar map.
+/// metadata. For D = 2, the file holds a planar map.
 ///
 /// While scans are read, each thread writes its sums of points to a temporary file whenever they fill its share of the
 /// memory, and at the end. The file has no name and lies in the folder of the map; its data are grouped by tile. The

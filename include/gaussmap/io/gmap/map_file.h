@@ -82,8 +82,8 @@ GAUSSMAP_API GaussianMap<D> finish(const GaussianMap<D>& map, int finest_scale =
 template <int D = 3>
 GAUSSMAP_API GaussianMap<D> load(const std::filesystem::path& path);
 
-/// Returns the number of dimensions of a map file: 2 for load<2>() or 3 for load(). Throws FileError if the file is not
-/// a map, has a newer version, or states another number.
+/// Returns the number of dimensions of the map in a file: 2 or 3. Read a planar map with load<2>(), and a map in space
+/// with load(). Throws FileError if the file is not a map, has a newer version, or gives any other number.
 GAUSSMAP_API int mapDimensions(const std::filesystem::path& path);
 
 /// Returns the metadata given to save(). Throws FileError if the file is not a map, like load().

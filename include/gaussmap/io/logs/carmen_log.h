@@ -38,12 +38,13 @@ struct CarmenLog {
 /// 1 for other numbers. Without a return, a SICK writes a range of about 81.8 m. LaserScan::max_range is therefore 80 m
 /// for such lasers.
 ///
-/// The time of a sweep is that of the message: the third last word of the line. CARMEN often writes it with six digits
-/// only, so that many sweeps have the same time. Lines without a time are accepted.
+/// The time of a sweep [s] is the timestamp of its message: the third word from the end of the line. CARMEN often
+/// writes it with only six digits, so many sweeps have the same time. If a line has no time, LaserScan::time is
+/// std::nullopt.
 ///
 /// Damaged lines are skipped and listed in CarmenLog::faults. If a gzip file is truncated or damaged, all whole lines
-/// before the damage are kept. Throws FileError if the file cannot be read or holds no usable scan, or if the lines
-/// with scans are more than 100 times as long as a gzip file (and 16 MiB).
+/// before the damage are kept. Throws FileError if the file cannot be read or holds no usable scan. To limit the
+/// memory, it also throws FileError if the lines with scans take more than 16 MiB plus 100 times the size of the file.
 GAUSSMAP_API CarmenLog readCarmenLog(const std::filesystem::path& path);
 
 /// Returns true if a file name ends in .log, .clf, .log.gz or .clf.gz, in upper or lower case.

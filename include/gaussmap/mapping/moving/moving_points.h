@@ -128,36 +128,36 @@ class GAUSSMAP_API MovingPoints {
   std::unique_ptr<State> state_;
 };
 
-/// What is assumed of places where a map has no cell.
+/// What freePoints() assumes about places where the map has no cell.
 enum class UnknownSpace {
   Automatic,  ///< free if the map has a surface behind the place, as seen from the sensor; otherwise occupied
-  Keep,       ///< occupied: points there are kept
-  Remove      ///< free: points there are removed, also at places that no scan has seen
+  Keep,       ///< occupied: points there are never free
+  Remove      ///< free, even if no scan has seen the place
 };
 
 /// Options of freePoints().
 struct FreePointOptions {
   float threshold = 0.0f;  ///< a place is free if its log-odds of occupancy are below this value
   UnknownSpace unknown = UnknownSpace::Automatic;  ///< what is assumed of places without a cell
-  VisibilityOptions visibility;                    ///< limits of UnknownSpace::Automatic [m]
-  int threads = 0;                                 ///< 0 = all cores
+  VisibilityOptions visibility;  ///< UnknownSpace::Automatic: how clearly a surface must lie behind a free place
+  int threads = 0;               ///< 0 = all cores
 };
 
-/// Returns one flag per point of a scan: true if a map shows that its place is free. Something at a free place moves.
+/// Returns one flag per point of a scan: true if the map shows that the place of the point is free. A point at a free
+/// place belongs to an object that moves or is new.
 ///
 /// `points` [m, map frame] are the points of the scan, and `sensor` [m, map frame] is the position of its sensor.
 /// Points that are not finite get false. A place where the map has a cell is free if its log-odds are below
 /// FreePointOptions::threshold. A map of OnlineMapper has no cells where it has forgotten an object, so most free
-/// places have no cell. With UnknownSpace::Automatic, such a place is decided in two steps:
-/// - The means of the leaves are drawn into a range image with pixels of 1 degree, as seen from `sensor`. A place is
-///   free if this image passes through it (see visibilityOf()): the nearest surfaces of the map in this direction lie
-///   clearly behind the place. The scans of the map have seen these surfaces through the place, if their sensors were
-///   near `sensor`.
-/// - A place without a cell is also free if it is connected to a free place by other points without cells, over at
-///   most four cubes of 0.2 m. Such points are the edges and the feet of an object.
+/// places have no cell. With UnknownSpace::Automatic, two rules decide about a place without a cell:
+/// - It is free if the nearest surfaces of the map in its direction lie clearly behind it. For this test, the means of
+///   the leaves that are not free are drawn into a range image with pixels of 1 degree, as seen from `sensor` (see
+///   visibilityOf()). The map has usually seen these surfaces through the place, if its sensors were near `sensor`.
+/// - It is also free if a chain of at most four adjacent cubes of 0.2 m connects it to a free place. Each cube of the
+///   chain must hold a free point or a point without a cell. This rule finds the edges and the feet of an object.
 ///
-/// A static object that the map has not seen is therefore kept, unless it stands before a surface that the map has.
-/// Throws std::invalid_argument if UnknownSpace::Automatic needs the position of the sensor and it is not finite.
+/// So a static object that the map has not seen gets false, unless it stands in front of a surface of the map. Throws
+/// std::invalid_argument if UnknownSpace::Automatic needs the position of the sensor and it is not finite.
 GAUSSMAP_API std::vector<bool> freePoints(const GaussianMap<3>& map, const std::vector<Eigen::Vector3d>& points,
                                           const Eigen::Vector3d& sensor, const FreePointOptions& options = {});
 

@@ -36,15 +36,15 @@ Pose sensorPose(const pcl::PointCloud<PointT>& cloud) {
   return normalised(pose);
 }
 
-/// The input of a class that takes one cloud after the other: a cloud, indices, and the pose of the sensor.
+/// Base of classes that take one cloud after the other: holds the input cloud, its indices and the pose of the sensor.
 template <typename PointT>
 class CloudInput : public pcl::PCLBase<PointT> {
  public:
-  /// Sets the pose of the sensor for the following clouds: sensor frame to map frame. It replaces the pose in
-  /// sensor_origin_ and sensor_orientation_ and is not rounded to floats.
+  /// Sets the pose of the sensor for the following clouds: sensor frame to map frame. It is used instead of
+  /// sensor_origin_ and sensor_orientation_, which are only floats.
   void setSensorPose(const Pose& pose) { pose_ = pose; }
-  /// Sets the pose of the sensor as a rigid 4 x 4 transform. A matrix that is not a rigid transform makes the following
-  /// calls fail with an error.
+  /// Sets the pose of the sensor as a rigid 4 x 4 transform. If the matrix is not a rigid transform, prints an error.
+  /// Until a new pose is set, calls that need the pose then fail with an error.
   template <typename Scalar>
   void setSensorPose(const Eigen::Matrix<Scalar, 4, 4>& matrix) {
     try {
@@ -55,17 +55,18 @@ class CloudInput : public pcl::PCLBase<PointT> {
       pose_->translation.setConstant(std::numeric_limits<double>::quiet_NaN());
     }
   }
-  /// Sets the pose of the sensor, as the other setSensorPose().
+  /// Sets the pose of the sensor as an Eigen transform, for example Eigen::Isometry3d. It must be rigid.
   template <typename Scalar, int Mode>
   void setSensorPose(const Eigen::Transform<Scalar, 3, Mode>& transform) {
     setSensorPose(Eigen::Matrix<Scalar, 4, 4>(transform.matrix()));
   }
   /// Uses the pose in sensor_origin_ and sensor_orientation_ of each cloud. This is the default.
   void useSensorPoseOfCloud() { pose_.reset(); }
-  /// Returns the given pose, or std::nullopt if each cloud has its own.
+  /// Returns the pose of setSensorPose(), or std::nullopt if the pose of each cloud is used.
   const std::optional<Pose>& sensorPose() const { return pose_; }
   /// Sets the frame of the points. ScanFrame::Sensor (default): the pose transforms them into the map frame.
-  /// ScanFrame::Map: they are in the map frame, and the pose gives only the position of the sensor.
+  /// ScanFrame::Map: the points are already in the map frame. PointCloudMapBuilder then ignores the pose, and
+  /// PointCloudOnlineMapper uses it as the place from which the points were seen.
   void setFrame(ScanFrame frame) { frame_ = frame; }
   /// Returns the frame of the points.
   ScanFrame frame() const { return frame_; }

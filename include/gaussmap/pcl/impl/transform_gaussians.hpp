@@ -10,13 +10,14 @@
 
 #include "gaussmap/pcl/point_gaussian.h"
 
-// Overloads of pcl::transformPointCloud() for clouds of Gaussians, with the parameters that PCL's templates have. Where
-// PCL has a template for any Scalar and one for floats, there must be both here: the one for floats also takes
-// expressions, such as matrix.inverse().
+// Overloads of pcl::transformPointCloud() for clouds of Gaussians, with the same parameters as PCL's functions. Where
+// PCL has a template for any Scalar and a function for floats, both are needed here too: only the function for floats
+// accepts expressions, such as matrix.inverse().
 namespace gaussmap {
 namespace detail {
 
-/// void, or no type at all if Scalar is not a number, as in pcl::transformPointCloud<PointGaussian>(...).
+/// void if Scalar is a floating-point type. Otherwise there is no such type, which removes the overload: in
+/// pcl::transformPointCloud<PointGaussian>(...), the template argument is the point type.
 template <typename Scalar>
 using IfFloatingPoint = std::enable_if_t<std::is_floating_point_v<Scalar>>;
 
@@ -25,11 +26,12 @@ using IfFloatingPoint = std::enable_if_t<std::is_floating_point_v<Scalar>>;
 /// Transforms a cloud of Gaussians: the mean becomes A m + t, and the covariance becomes A C A^T, where A is the 3 x 3
 /// part of `transform` and t is its translation.
 ///
-/// These overloads are chosen instead of PCL's templates, also for calls as pcl::transformPointCloud(). PCL's templates
-/// would move the means and leave the covariances as they are. As with PCL, `in` and `out` can be the same cloud,
-/// sensor_origin_ and sensor_orientation_ stay as they are, and without `copy_all_fields` the fields other than mean
-/// and covariance are those of a new point. The keys of the cells stay too, but the Gaussians no longer lie in these
-/// cells: to move a map, use transform(), which sorts the Gaussians into new cells.
+/// The compiler chooses these overloads instead of PCL's templates, also for calls of pcl::transformPointCloud(). PCL's
+/// templates would transform the means, but not the covariances. As with PCL, `in` and `out` can be the same cloud, and
+/// sensor_origin_ and sensor_orientation_ do not change. If `copy_all_fields` is false, all fields except mean and
+/// covariance are those of a new point. If it is true, they are copied, also the keys of the cells, although the
+/// Gaussians no longer lie in these cells. To transform a map, use transformMap(), which sorts the Gaussians into new
+/// cells.
 template <typename Scalar>
 detail::IfFloatingPoint<Scalar> transformPointCloud(const pcl::PointCloud<PointGaussian>& in,
                                                     pcl::PointCloud<PointGaussian>& out,
@@ -38,7 +40,7 @@ detail::IfFloatingPoint<Scalar> transformPointCloud(const pcl::PointCloud<PointG
   if (&in != &out) out = in;
   detail::transformGaussians(transform.template cast<double>(), copy_all_fields, out);
 }
-/// Transforms a cloud of Gaussians by floats.
+/// Transforms a cloud of Gaussians by a float matrix.
 inline void transformPointCloud(const pcl::PointCloud<PointGaussian>& in, pcl::PointCloud<PointGaussian>& out,
                                 const Eigen::Matrix4f& transform, bool copy_all_fields = true) {
   transformPointCloud<float>(in, out, transform, copy_all_fields);
@@ -51,12 +53,12 @@ detail::IfFloatingPoint<Scalar> transformPointCloud(const pcl::PointCloud<PointG
                                                     bool copy_all_fields = true) {
   transformPointCloud<Scalar>(in, out, transform.matrix(), copy_all_fields);
 }
-/// Transforms a cloud of Gaussians by an affine transform of floats.
+/// Transforms a cloud of Gaussians by a float affine transform.
 inline void transformPointCloud(const pcl::PointCloud<PointGaussian>& in, pcl::PointCloud<PointGaussian>& out,
                                 const Eigen::Affine3f& transform, bool copy_all_fields = true) {
   transformPointCloud<float>(in, out, transform.matrix(), copy_all_fields);
 }
-/// Transforms a cloud of Gaussians by a rotation and then a translation.
+/// Transforms a cloud of Gaussians by a rotation, followed by a translation [m].
 template <typename Scalar>
 detail::IfFloatingPoint<Scalar> transformPointCloud(const pcl::PointCloud<PointGaussian>& in,
                                                     pcl::PointCloud<PointGaussian>& out,
@@ -66,14 +68,14 @@ detail::IfFloatingPoint<Scalar> transformPointCloud(const pcl::PointCloud<PointG
   const Eigen::Transform<Scalar, 3, Eigen::Affine> transform(Eigen::Translation<Scalar, 3>(offset) * rotation);
   transformPointCloud<Scalar>(in, out, transform.matrix(), copy_all_fields);
 }
-/// Transforms a cloud of Gaussians by a rotation and then a translation of floats.
+/// Transforms a cloud of Gaussians by a float rotation, followed by a float translation [m].
 inline void transformPointCloud(const pcl::PointCloud<PointGaussian>& in, pcl::PointCloud<PointGaussian>& out,
                                 const Eigen::Vector3f& offset, const Eigen::Quaternionf& rotation,
                                 bool copy_all_fields = true) {
   transformPointCloud<float>(in, out, offset, rotation, copy_all_fields);
 }
 
-/// Transforms some Gaussians of a cloud. `out` gets only these.
+/// Transforms the selected Gaussians of a cloud. `out` receives only these.
 template <typename Scalar>
 detail::IfFloatingPoint<Scalar> transformPointCloud(const pcl::PointCloud<PointGaussian>& in,
                                                     const pcl::Indices& indices, pcl::PointCloud<PointGaussian>& out,
@@ -82,13 +84,13 @@ detail::IfFloatingPoint<Scalar> transformPointCloud(const pcl::PointCloud<PointG
   out = pcl::PointCloud<PointGaussian>(in, indices);
   detail::transformGaussians(transform.template cast<double>(), copy_all_fields, out);
 }
-/// Transforms some Gaussians of a cloud by floats.
+/// Transforms the selected Gaussians of a cloud by a float matrix.
 inline void transformPointCloud(const pcl::PointCloud<PointGaussian>& in, const pcl::Indices& indices,
                                 pcl::PointCloud<PointGaussian>& out, const Eigen::Matrix4f& transform,
                                 bool copy_all_fields = true) {
   transformPointCloud<float>(in, indices, out, transform, copy_all_fields);
 }
-/// Transforms some Gaussians of a cloud by an affine transform.
+/// Transforms the selected Gaussians of a cloud by an affine transform.
 template <typename Scalar>
 detail::IfFloatingPoint<Scalar> transformPointCloud(const pcl::PointCloud<PointGaussian>& in,
                                                     const pcl::Indices& indices, pcl::PointCloud<PointGaussian>& out,
@@ -96,13 +98,13 @@ detail::IfFloatingPoint<Scalar> transformPointCloud(const pcl::PointCloud<PointG
                                                     bool copy_all_fields = true) {
   transformPointCloud<Scalar>(in, indices, out, transform.matrix(), copy_all_fields);
 }
-/// Transforms some Gaussians of a cloud by an affine transform of floats.
+/// Transforms the selected Gaussians of a cloud by a float affine transform.
 inline void transformPointCloud(const pcl::PointCloud<PointGaussian>& in, const pcl::Indices& indices,
                                 pcl::PointCloud<PointGaussian>& out, const Eigen::Affine3f& transform,
                                 bool copy_all_fields = true) {
   transformPointCloud<float>(in, indices, out, transform.matrix(), copy_all_fields);
 }
-/// Transforms some Gaussians of a cloud.
+/// Transforms the selected Gaussians of a cloud.
 template <typename Scalar>
 detail::IfFloatingPoint<Scalar> transformPointCloud(const pcl::PointCloud<PointGaussian>& in,
                                                     const pcl::PointIndices& indices,
@@ -111,13 +113,13 @@ detail::IfFloatingPoint<Scalar> transformPointCloud(const pcl::PointCloud<PointG
                                                     bool copy_all_fields = true) {
   transformPointCloud<Scalar>(in, indices.indices, out, transform, copy_all_fields);
 }
-/// Transforms some Gaussians of a cloud by floats.
+/// Transforms the selected Gaussians of a cloud by a float matrix.
 inline void transformPointCloud(const pcl::PointCloud<PointGaussian>& in, const pcl::PointIndices& indices,
                                 pcl::PointCloud<PointGaussian>& out, const Eigen::Matrix4f& transform,
                                 bool copy_all_fields = true) {
   transformPointCloud<float>(in, indices.indices, out, transform, copy_all_fields);
 }
-/// Transforms some Gaussians of a cloud by an affine transform.
+/// Transforms the selected Gaussians of a cloud by an affine transform.
 template <typename Scalar>
 detail::IfFloatingPoint<Scalar> transformPointCloud(const pcl::PointCloud<PointGaussian>& in,
                                                     const pcl::PointIndices& indices,
@@ -126,7 +128,7 @@ detail::IfFloatingPoint<Scalar> transformPointCloud(const pcl::PointCloud<PointG
                                                     bool copy_all_fields = true) {
   transformPointCloud<Scalar>(in, indices.indices, out, transform.matrix(), copy_all_fields);
 }
-/// Transforms some Gaussians of a cloud by an affine transform of floats.
+/// Transforms the selected Gaussians of a cloud by a float affine transform.
 inline void transformPointCloud(const pcl::PointCloud<PointGaussian>& in, const pcl::PointIndices& indices,
                                 pcl::PointCloud<PointGaussian>& out, const Eigen::Affine3f& transform,
                                 bool copy_all_fields = true) {
