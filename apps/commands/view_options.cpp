@@ -22,8 +22,10 @@ void addViewOptions(CLI::App& program, ViewCommand& options) {
   command.flag("--hierarchy", options.view.hierarchy,
                "draw all scales, one above the other, with links to the children");
   command.choice("--up", options.up, Command::wordsOf(kUpAxes), "axis that points up");
-  command.text("--view", options.from,
-               "top, iso, or the direction x,y,z from the map to the eye; default: iso, planar maps top");
+  command
+      .text("--view", options.from,
+            "top, iso, or the direction x,y,z from the map to the eye; default: iso, planar maps top")
+      .hideDefault();
   command.number("--zoom", options.view.view.zoom, 0.01, 1000.0, "magnification, 1 = the whole map");
   command.numbers("--at", options.at, 3, -1e9, 1e9, "point to look at [m]; default: the middle of the map")
       .type("X Y Z");

@@ -109,7 +109,7 @@ std::optional<FoundGaussian> MapSearch<D>::nearest(const Vector<D>& point) const
 }
 
 template <int D>
-std::vector<FoundGaussian> MapSearch<D>::nearest(const Vector<D>& point, int k) const {
+std::vector<FoundGaussian> MapSearch<D>::nearestK(const Vector<D>& point, int k) const {
   checkCount(k);
   checkQuery(parts_->grid, point);
   if (k == 0) return {};

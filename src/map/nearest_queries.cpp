@@ -68,15 +68,15 @@ std::vector<FoundGaussian> meansWithin(const GaussianMap<D>& map, const Vector<D
 template <int D>
 std::optional<NearestGaussian<D>> nearest(const GaussianMap<D>& map, const Vector<D>& point, int scale) {
   checkScale(map, scale);
-  if (map.cellCount(scale) == 0) return std::nullopt;
   checkQuery(map.grid(), point);
+  if (map.cellCount(scale) == 0) return std::nullopt;
   const auto one =
       searchNearest(map, point, 1, scale, [](double limit) { return NearestOne<double, std::uint64_t>(limit); });
   return NearestGaussian<D>{MeanSearch<D>::indexOf(one.best().index), one.best().distance};
 }
 
 template <int D>
-std::vector<FoundGaussian> nearest(const GaussianMap<D>& map, const Vector<D>& point, int k, int scale) {
+std::vector<FoundGaussian> nearestK(const GaussianMap<D>& map, const Vector<D>& point, int k, int scale) {
   checkScale(map, scale);
   return nearestMeans(map, point, k, scale);
 }
@@ -99,7 +99,7 @@ std::vector<FoundGaussian> leavesWithin(const GaussianMap<D>& map, const Vector<
 
 #define GAUSSMAP_INSTANTIATE(D)                                                                          \
   template std::optional<NearestGaussian<(D)>> nearest<D>(const GaussianMap<D>&, const Vector<D>&, int); \
-  template std::vector<FoundGaussian> nearest<D>(const GaussianMap<D>&, const Vector<D>&, int, int);     \
+  template std::vector<FoundGaussian> nearestK<D>(const GaussianMap<D>&, const Vector<D>&, int, int);    \
   template std::vector<FoundGaussian> within<D>(const GaussianMap<D>&, const Vector<D>&, double, int);   \
   template std::vector<FoundGaussian> nearestLeaves<D>(const GaussianMap<D>&, const Vector<D>&, int);    \
   template std::vector<FoundGaussian> leavesWithin<D>(const GaussianMap<D>&, const Vector<D>&, double);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "gaussmap/mapping/thin_points.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -10,7 +12,6 @@
 #include "clustering/ward.h"
 #include "core/check.h"
 #include "core/quantile.h"
-#include "gaussmap/mapping/build.h"
 #include "mapping/sorted_cells.h"
 
 namespace gaussmap {

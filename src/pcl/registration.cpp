@@ -29,7 +29,7 @@ Pose poseOfMatrix(const Eigen::Matrix4d& matrix) {
                      rotation.determinant() > 0.0 && matrix.row(3).isApprox(Eigen::RowVector4d(0, 0, 0, 1), kRigid);
   if (!rigid) {
     std::ostringstream text;
-    text << "the guess is not a rigid transform:\n" << matrix;
+    text << "the matrix is not a rigid transform:\n" << matrix;
     throw std::invalid_argument(text.str());
   }
   return normalised({matrix.topRightCorner<3, 1>(), Pose::Rotation(rotation)});

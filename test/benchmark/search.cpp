@@ -163,7 +163,7 @@ Times timesOfMapSearch(const GaussianMapOctree& map, int scale, const Questions&
   times.build = secondsOf([&] { search.emplace(map, scale); });
   askMap(
       questions, times, [&](const Vector<3>& point) { return search->nearest(point)->distance; },
-      [&](const Vector<3>& point) { return search->nearest(point, kNeighbours); },
+      [&](const Vector<3>& point) { return search->nearestK(point, kNeighbours); },
       [&](const Vector<3>& point) { return search->within(point, questions.radius); });
   return times;
 }
@@ -173,7 +173,7 @@ Times timesOfQueries(const GaussianMapOctree& map, int scale, const Questions& q
   times.name = "queries of the map";
   askMap(
       questions, times, [&](const Vector<3>& point) { return nearest<3>(map, point, scale)->distance; },
-      [&](const Vector<3>& point) { return nearest<3>(map, point, kNeighbours, scale); },
+      [&](const Vector<3>& point) { return nearestK<3>(map, point, kNeighbours, scale); },
       [&](const Vector<3>& point) { return within<3>(map, point, questions.radius, scale); });
   return times;
 }

@@ -70,8 +70,8 @@ void expectTheBruteForceResults(const GaussianMap<D>& map, const Vector<D>& cent
       const List all = allInOrder<D>(map, point, ids);
       for (const int k : {0, 1, 10, 100, 100000}) {
         const std::size_t count = std::min(all.size(), std::size_t(k));
-        expectFirst(s < 0 ? nearestLeaves(map, point, k) : nearest(map, point, k, s), all, count);
-        expectFirst(search.nearest(point, k), all, count);
+        expectFirst(s < 0 ? nearestLeaves(map, point, k) : nearestK(map, point, k, s), all, count);
+        expectFirst(search.nearestK(point, k), all, count);
       }
       if (all.empty()) {
         EXPECT_FALSE(search.nearest(point));
@@ -115,7 +115,7 @@ TEST(MapQueries, FindTheSameFarFromTheOrigin) {
   const auto map = build<3>(points, {0.1, 10, 2, 0.0});
   const Vector<3> query = map.gaussian(17, 0).mean + Vector<3>(0.013, -0.02, 0.007);
   const List all = allInOrder<3>(map, query, leaves<3>(map));
-  const List nearby = nearest<3>(map, query, 20, 0), prepared = MapSearch<3>(map).nearest(query, 20);
+  const List nearby = nearestK<3>(map, query, 20, 0), prepared = MapSearch<3>(map).nearestK(query, 20);
   ASSERT_EQ(nearby.size(), 20u);
   ASSERT_EQ(prepared.size(), 20u);
   for (std::size_t i = 0; i < 20; ++i) {  // a double resolves a nanometre there
@@ -126,7 +126,7 @@ TEST(MapQueries, FindTheSameFarFromTheOrigin) {
 
 TEST(MapQueries, OfAnEmptyMapFindNothing) {
   const GaussianMapOctree map;
-  EXPECT_TRUE(nearest<3>(map, {0, 0, 0}, 5, 0).empty());
+  EXPECT_TRUE(nearestK<3>(map, {0, 0, 0}, 5, 0).empty());
   EXPECT_TRUE(within<3>(map, {0, 0, 0}, 1e6, 2).empty());
   EXPECT_TRUE(nearestLeaves<3>(map, {0, 0, 0}, 5).empty());
   EXPECT_TRUE(leavesWithin<3>(map, {0, 0, 0}, 5).empty());
@@ -138,8 +138,8 @@ TEST(MapQueries, GiveTiesToTheSmallerIndexAndIncludeTheBorder) {  // four means,
   const auto map =
       build<3>({{0.25, 0.5, 0.5}, {0.75, 0.5, 0.5}, {0.5, 0.25, 0.5}, {0.5, 0.75, 0.5}}, {0.125, 2, 2, 0.0});
   const Vector<3> middle(0.5, 0.5, 0.5);
-  for (const List& found : {nearest<3>(map, middle, 4, 0), within<3>(map, middle, 0.25, 0),
-                            MapSearch<3>(map, 0).nearest(middle, 4), MapSearch<3>(map, 0).within(middle, 0.25)}) {
+  for (const List& found : {nearestK<3>(map, middle, 4, 0), within<3>(map, middle, 0.25, 0),
+                            MapSearch<3>(map, 0).nearestK(middle, 4), MapSearch<3>(map, 0).within(middle, 0.25)}) {
     ASSERT_EQ(found.size(), 4u);
     for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(found[i].id, (GaussianId{0, i}));
   }
@@ -155,20 +155,20 @@ TEST(MapQueries, RefuseWhatTheyCannotSearch) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const Vector<3>& bad : {Vector<3>(nan, 0, 0), Vector<3>(0, 1e300, 0), Vector<3>(0, 0, -1e9)}) {
     EXPECT_THROW(nearest<3>(map, bad, 0), std::out_of_range);
-    EXPECT_THROW(nearest<3>(map, bad, 3, 0), std::out_of_range);
+    EXPECT_THROW(nearestK<3>(map, bad, 3, 0), std::out_of_range);
     EXPECT_THROW(within<3>(map, bad, 3.0, 0), std::out_of_range);
     EXPECT_THROW(nearestLeaves<3>(map, bad, 3), std::out_of_range);
     EXPECT_THROW(search.nearest(bad), std::out_of_range);
-    EXPECT_THROW(search.nearest(bad, 3), std::out_of_range);
+    EXPECT_THROW(search.nearestK(bad, 3), std::out_of_range);
     EXPECT_THROW(search.within(bad, 3.0), std::out_of_range);
   }
   const Vector<3> good(0, 0, 0);
   EXPECT_THROW(nearest<3>(map, good, 2), std::out_of_range);
-  EXPECT_THROW(nearest<3>(map, good, 1, -1), std::out_of_range);
+  EXPECT_THROW(nearestK<3>(map, good, 1, -1), std::out_of_range);
   EXPECT_THROW(within<3>(map, good, 1.0, 2), std::out_of_range);
   EXPECT_THROW(MapSearch<3>(map, 2), std::out_of_range);
-  EXPECT_THROW(nearest<3>(map, good, -1, 0), std::invalid_argument);
-  EXPECT_THROW(search.nearest(good, -1), std::invalid_argument);
+  EXPECT_THROW(nearestK<3>(map, good, -1, 0), std::invalid_argument);
+  EXPECT_THROW(search.nearestK(good, -1), std::invalid_argument);
   EXPECT_THROW(within<3>(map, good, nan, 0), std::invalid_argument);
   EXPECT_THROW(leavesWithin<3>(map, good, -1.0), std::invalid_argument);
   EXPECT_THROW(search.within(good, -0.5), std::invalid_argument);

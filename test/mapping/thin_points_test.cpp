@@ -10,7 +10,8 @@
 #include <stdexcept>
 
 #include "core/quantile.h"
-#include "gaussmap/mapping/build.h"
+#include "gaussmap/map/moment_grid.h"
+#include "gaussmap/mapping/thin_points.h"
 #include "points/nearest_distances.h"
 
 namespace gaussmap {

@@ -243,7 +243,7 @@ TEST(GaussianMapSearch, OfAMapFindsItsMeans) {
       ASSERT_EQ(search.nearestKSearch(point, 4, indices, squares), std::min<int>(4, int(expected.size())));
       EXPECT_EQ(std::size_t(indices[0]), i);
       const Vector<3> mean = point.getVector3fMap().cast<double>();
-      const auto same = nearest<3>(map, mean, 4, scale);
+      const auto same = nearestK<3>(map, mean, 4, scale);
       for (std::size_t n = 0; n < indices.size(); ++n)
         EXPECT_NEAR(std::sqrt(squares[n]), same[n].distance, 1e-6 * (1.0 + same[n].distance));
     }

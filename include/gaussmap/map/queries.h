@@ -88,7 +88,7 @@ GAUSSMAP_API std::optional<NearestGaussian<D>> nearest(const GaussianMap<D>& map
 ///
 /// Throws std::out_of_range like nearest() without `k`, and std::invalid_argument if `k` is negative.
 template <int D>
-GAUSSMAP_API std::vector<FoundGaussian> nearest(const GaussianMap<D>& map, const Vector<D>& point, int k, int scale);
+GAUSSMAP_API std::vector<FoundGaussian> nearestK(const GaussianMap<D>& map, const Vector<D>& point, int k, int scale);
 /// Returns the Gaussians of a scale whose means are at most `radius` [m] from a point, sorted by distance, then by
 /// index. Throws std::out_of_range like nearest(), and std::invalid_argument if the radius is negative or NaN.
 template <int D>
@@ -131,7 +131,7 @@ class GAUSSMAP_API MapSearch {
   /// Throws std::out_of_range if the point is not finite or out of the grid's range.
   std::optional<FoundGaussian> nearest(const Vector<D>& point) const;
   /// Returns the `k` Gaussians whose means are nearest to a point. Order and errors are those of nearestLeaves().
-  std::vector<FoundGaussian> nearest(const Vector<D>& point, int k) const;
+  std::vector<FoundGaussian> nearestK(const Vector<D>& point, int k) const;
   /// Returns the Gaussians whose means are at most `radius` [m] from a point. Order and errors are those of
   /// leavesWithin().
   std::vector<FoundGaussian> within(const Vector<D>& point, double radius) const;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "gaussmap/map/gaussian_map.h"
-#include "gaussmap/mapping/build.h"
+#include "gaussmap/mapping/thin_points.h"
 #include "gaussmap/points/split_points.h"
 #include "gaussmap/version.h"
 
