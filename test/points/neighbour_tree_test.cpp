@@ -78,7 +78,7 @@ class NeighbourTreeTest : public testing::Test {
 };
 
 using Scalars = testing::Types<float, double>;
-TYPED_TEST_SUITE(NeighbourTreeTest, Scalars);
+TYPED_TEST_SUITE(NeighbourTreeTest, Scalars, );
 
 TYPED_TEST(NeighbourTreeTest, FindsWhatAComparisonWithAllPointsFinds) {
   for (const double height : {10.0, 0.01, 0.0}) {  // a volume, a surface, a plane
