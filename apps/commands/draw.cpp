@@ -66,6 +66,7 @@ std::vector<Box<2>> squaresOf(const GaussianMap<3>& map, int scale) {
   std::set<std::pair<std::int32_t, std::int32_t>> keys;
   for (const CellKey<3>& key : map.scale(scale).keys) keys.emplace(key[0], key[1]);
   std::vector<Box<2>> squares;
+  squares.reserve(keys.size());
   const double side = map.grid().side(scale);
   for (const auto& [x, y] : keys) squares.push_back({Vector<2>(x, y) * side, Vector<2>(x + 1.0, y + 1.0) * side});
   return squares;

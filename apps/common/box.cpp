@@ -22,7 +22,7 @@ Box<3> boxOf(const std::string& option, const std::vector<double>& n) {
 
 template <int D>
 Box<D> mapBoxOf(const std::string& option, const std::vector<double>& n) {
-  const Box<3> box = boxOf(option, n);
+  Box<3> box = boxOf(option, n);
   if constexpr (D == 2) {
     if (n.size() != 4) throw UsageError(option + ": a planar map has no heights; give x0 y0 x1 y1");
     return {box.low.head<2>(), box.high.head<2>()};

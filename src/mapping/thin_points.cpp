@@ -71,7 +71,7 @@ struct UnionMoments {
     const auto n = double(moments.count);
     double shift[3], offset[3];
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      shift[axis] = double(std::int64_t{key[axis]} - first[axis]);
+      shift[axis] = static_cast<double>(static_cast<std::int64_t>(key[axis]) - first[axis]);
       offset[axis] = double(moments.sum[axis]) * kStep;
       sum[axis] += offset[axis] + n * shift[axis];
     }
