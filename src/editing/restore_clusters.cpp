@@ -94,9 +94,9 @@ RestoredMap<D> restoreClusters(const GaussianMap<D>& map, const std::vector<Remo
   return restored;
 }
 
-#define GAUSSMAP_INSTANTIATE(D)                                                                            \
-  template RestoredMap<D> restoreClusters<D>(const GaussianMap<D>&, const std::vector<RemovedCluster<D>>&, \
-                                             const std::function<bool(const Vector<D>&)>&, int);
+#define GAUSSMAP_INSTANTIATE(D)                                                                              \
+  template RestoredMap<D> restoreClusters<D>(const GaussianMap<D>&, const std::vector<RemovedCluster<(D)>>&, \
+                                             const std::function<bool(const Vector<(D)>&)>&, int);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)
 #undef GAUSSMAP_INSTANTIATE

@@ -180,9 +180,9 @@ std::vector<RemovedCluster<D>> readRemoved(const std::filesystem::path& path) {
   return removed;
 }
 
-#define GAUSSMAP_INSTANTIATE(D)                                                                       \
-  template void writeRemoved<D>(const std::filesystem::path&, const std::vector<RemovedCluster<D>>&); \
-  template std::vector<RemovedCluster<D>> readRemoved<D>(const std::filesystem::path&);
+#define GAUSSMAP_INSTANTIATE(D)                                                                         \
+  template void writeRemoved<D>(const std::filesystem::path&, const std::vector<RemovedCluster<(D)>>&); \
+  template std::vector<RemovedCluster<(D)>> readRemoved<D>(const std::filesystem::path&);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)
 #undef GAUSSMAP_INSTANTIATE

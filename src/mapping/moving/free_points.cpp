@@ -84,7 +84,8 @@ void growFreePoints(const std::vector<Eigen::Vector3d>& points, std::vector<Poin
     for (const std::size_t from : std::exchange(front, {}))
       for (int neighbour = 0; neighbour < 27; ++neighbour) {
         const Cube& at = cubes[from].first;
-        const Cube wanted{at[0] + neighbour % 3 - 1, at[1] + neighbour / 3 % 3 - 1, at[2] + neighbour / 9 - 1};
+        const int x = neighbour % 3 - 1, y = neighbour / 3 % 3 - 1, z = neighbour / 9 - 1;
+        const Cube wanted{at[0] + x, at[1] + y, at[2] + z};
         const auto found = std::lower_bound(cubes.begin(), cubes.end(), std::pair{wanted, std::size_t{0}});
         if (found != cubes.end() && found->first == wanted) reach(static_cast<std::size_t>(found - cubes.begin()));
       }
