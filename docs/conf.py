@@ -26,6 +26,8 @@ nitpick_ignore_regex = [
     ("cpp:identifier", r"Pose(Covariance|Direction)::Zero"),  # of Eigen
     ("cpp:identifier", r"(std|Eigen|pcl)(::.*)?|gaussmap"),
     ("cpp:identifier", r"(Vector|Matrix)<.*>::.*|Rotation::.*"),  # members of Eigen's types
+    ("cpp:identifier", r"(AccumulatedScans|OnlineMapper)<.*>::.*"),  # types in class templates
+    ("cpp:identifier", r"detail(::CloudInput<.*>)?"),  # what the map builders share
     ("cpp:identifier", r"Base(::.*)?|PointCloud\w*Ptr"),  # the class of PCL that a plug-in derives from
 ]
 
