@@ -11,4 +11,8 @@ Matrix<2> PlanarPose::rotation() const {
   return matrix;
 }
 
+PlanarPose moved(const PlanarPose& pose, const Eigen::Vector3d& by) {
+  return {pose.position + by.head<2>(), pose.heading + by.z()};
+}
+
 }  // namespace gaussmap::detail

@@ -28,4 +28,7 @@ struct PlanarEquations {
   double near_squared = 0.0;  ///< sum of the squared Mahalanobis distances of these
 };
 
+/// Returns the pose moved by a vector of (x, y [m], heading [rad]).
+PlanarPose moved(const PlanarPose& pose, const Eigen::Vector3d& by);
+
 }  // namespace gaussmap::detail

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "core/about_z.h"
 #include "gaussmap/mapping/build.h"
 #include "gaussmap/registration/registration.h"
 #include "registration/check_options.h"
@@ -25,13 +26,12 @@ struct HeadingAndTilt {
   explicit HeadingAndTilt(const Pose::Rotation& rotation) {
     heading = 2.0 * std::atan2(rotation.z(), rotation.w());
     if (rotation.x() == 0.0 && rotation.y() == 0.0) return;  // exactly planar
-    tilt = about(heading).conjugate() * rotation;
+    tilt = aboutZ(heading).conjugate() * rotation;
   }
 
-  static Pose::Rotation about(double heading) { return {std::cos(0.5 * heading), 0.0, 0.0, std::sin(0.5 * heading)}; }
   Pose::Rotation at(double new_heading) const {
-    if (tilt.x() == 0.0 && tilt.y() == 0.0) return about(new_heading);  // exactly planar
-    return Pose::Rotation(about(new_heading) * tilt).normalized();
+    if (tilt.x() == 0.0 && tilt.y() == 0.0) return aboutZ(new_heading);  // exactly planar
+    return Pose::Rotation(aboutZ(new_heading) * tilt).normalized();
   }
 };
 
@@ -59,7 +59,10 @@ RegistrationResult alignInPlane(const GaussianMap<2>& source, const GaussianMap<
   do {
     found = searchInPlane(scan, map, {Vector<2>::Zero(), start.heading}, origin, held, options);
     result.iterations += found.iterations;
-    if (found.equations.met < kFewestPairs || !(found.surfaces.trace() > 0.0)) return result;
+    if (found.equations.met < kFewestPairs || !(found.surfaces.trace() > 0.0)) {
+      result.least_observable.setZero();
+      return result;
+    }
     const Eigen::Vector3d least = leastObservable(found.surfaces, scan.range);
     result.least_observable << least.x(), least.y(), 0.0, 0.0, 0.0, least.z();
   } while (held.hold(found.surfaces, options.degenerate));

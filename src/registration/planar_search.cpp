@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "registration/planar_search.h"
 
-#include <algorithm>
-#include <cmath>
 #include <memory>
 #include <vector>
 
+#include "registration/descend.h"
 #include "registration/planar_neighbours.h"
 #include "registration/scan_gaussians.h"
 #include "registration/steps.h"
@@ -13,32 +12,6 @@
 
 namespace gaussmap::detail {
 namespace {
-
-/// Damped Gauss-Newton iterations on one scale, as in descend().
-void descendInPlane(PlanarNeighbours& near, double blur, double kernel, const DescentLimits& limits,
-                    const HeldPlanarDirections& held, PlanarFit& here) {
-  here.equations = near.linearise(here.pose, blur, kernel);
-  here.converged = false;
-  double damping = 1e-6;
-  for (int i = 0; i < limits.max_iterations && here.equations.met > 0 && !here.converged; ++i) {
-    ++here.iterations;
-    Eigen::Matrix3d damped = here.equations.information;
-    const double least = 1e-9 * damped.diagonal().maxCoeff();  // directions without information do not move
-    for (int axis = 0; axis < 3; ++axis) damped(axis, axis) += damping * damped(axis, axis) + least;
-    const Eigen::Vector3d by = held.step(damped, here.equations.gradient);
-    const PlanarPose next{here.pose.position + by.head<2>(), here.pose.heading + by.z()};
-    const PlanarEquations there = near.linearise(next, blur, kernel);
-    here.converged = by.head<2>().norm() <= limits.translation && std::abs(by.z()) <= limits.rotation;
-    if (there.cost <= here.equations.cost) {
-      here.pose = next;
-      here.equations = there;
-      damping = std::max(1e-9, 0.1 * damping);
-    } else {
-      damping = std::max(1e-3, 10.0 * damping);
-      if (damping > 1e6) here.converged = true;  // no step lowers the cost
-    }
-  }
-}
 
 /// A step from coarse to fine.
 struct PlanarStep {
@@ -73,11 +46,8 @@ Eigen::Matrix3d wallNormalsAt(const PlanarPose& pose, const PlanarScan& scan, co
 PlanarScan::PlanarScan(const GaussianMap<2>& source, double fine_side, std::size_t most)
     : fine(gaussiansOf<2>(source, fine_side, most)),
       coarse(gaussiansOf<2>(source, kCoarse * fine_side, most)),
-      side(fine_side) {
-  double squared = 0.0;
-  for (const Gaussian<2>& gaussian : fine) squared += gaussian.mean.squaredNorm() / double(fine.size());
-  range = std::max(1e-6, std::sqrt(squared));
-}
+      side(fine_side),
+      range(rmsRangeOf(fine)) {}
 
 PlanarFit searchInPlane(const PlanarScan& scan, const GaussianMap<2>& map, const PlanarPose& start,
                         const Vector<2>& origin, const HeldPlanarDirections& held, const RegistrationOptions& options) {
@@ -98,9 +68,14 @@ PlanarFit searchInPlane(const PlanarScan& scan, const GaussianMap<2>& map, const
     if (first > 0 && steps[first].scale == steps[first - 1].scale) continue;
     PlanarFit found;
     found.pose = start;
-    for (std::size_t i = first; i < steps.size(); ++i)
-      descendInPlane(*near[i], steps[i].blur, options.kernel, limitsOf(steps[i].blur, i + 1 == steps.size(), options),
-                     held, found);
+    for (std::size_t i = first; i < steps.size(); ++i) {
+      const auto at = [&](const PlanarPose& pose) { return near[i]->linearise(pose, steps[i].blur, options.kernel); };
+      const auto down = descend(at, found.pose, limitsOf(steps[i].blur, i + 1 == steps.size(), options), held);
+      found.pose = down.pose;
+      found.equations = down.equations;
+      found.iterations += down.iterations;
+      found.converged = down.converged;
+    }
     iterations += found.iterations;
     if (first == 0 || found.equations.cost < best.equations.cost) best = found;
   }

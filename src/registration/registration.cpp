@@ -72,15 +72,8 @@ struct Source {
       : fine(gaussiansOf<3>(source, fine_side, most)),
         coarse(gaussiansOf<3>(source, kCoarse * fine_side, most)),
         side(fine_side),
-        range(rangeOf(fine)),
+        range(rmsRangeOf(fine)),
         planar(isOfPlanarLaser(fine)) {}
-
- private:
-  static double rangeOf(const std::vector<Gaussian<3>>& gaussians) {
-    double squared = 0.0;
-    for (const Gaussian<3>& gaussian : gaussians) squared += gaussian.mean.squaredNorm() / double(gaussians.size());
-    return std::max(1e-6, std::sqrt(squared));
-  }
 };
 
 /// Searches the pose from a start, without moving it along the directions `held`.
@@ -120,7 +113,10 @@ RegistrationResult align(const GaussianMap<3>& source_map, const GaussianMap<3>&
   do {
     found = search(source, scales, start, held, options);
     result.iterations += found.iterations;
-    if (found.equations.met < kFewestPairs || !(found.surfaces.trace() > 0.0)) return result;
+    if (found.equations.met < kFewestPairs || !(found.surfaces.trace() > 0.0)) {
+      result.least_observable.setZero();
+      return result;
+    }
     result.least_observable = leastObservable(found.surfaces, source.range);
   } while (held.hold(found.surfaces, options.degenerate));
   result.pose = found.pose;

@@ -27,6 +27,15 @@ std::vector<Gaussian<D>> gaussiansOf(const GaussianMap<D>& source, double side, 
   return gaussians;
 }
 
+template <int D>
+double rmsRangeOf(const std::vector<Gaussian<D>>& scan) {
+  double squared = 0.0;
+  for (const Gaussian<D>& gaussian : scan) squared += gaussian.mean.squaredNorm() / double(scan.size());
+  return std::max(1e-6, std::sqrt(squared));
+}
+template double rmsRangeOf(const std::vector<Gaussian<2>>&);
+template double rmsRangeOf(const std::vector<Gaussian<3>>&);
+
 bool isOfPlanarLaser(const std::vector<Gaussian<3>>& scan) {
   if (scan.size() < 4) return false;
   Vector<3> centre = Vector<3>::Zero();

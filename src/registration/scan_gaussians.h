@@ -14,6 +14,10 @@ namespace gaussmap::detail {
 template <int D>
 std::vector<Gaussian<D>> gaussiansOf(const GaussianMap<D>& source, double side, std::size_t most);
 
+/// Returns the root mean square of the distances of the means from the sensor [m], at least 1e-6.
+template <int D>
+double rmsRangeOf(const std::vector<Gaussian<D>>& scan);
+
 /// Returns true if these are the Gaussians of a scan of a planar laser: lines in one plane.
 bool isOfPlanarLaser(const std::vector<Gaussian<3>>& scan);
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/about_z.h"
 #include "core/number_text.h"
 #include "gaussmap/core/error.h"
 
@@ -87,7 +88,7 @@ Scan levelled(const Scan& scan, const PlanarScanOptions& options) {
   const bool is_level = isAboutZ(scan.pose.rotation);
   Scan level = scan;
   level.pose.translation.z() = 0.0;
-  if (!is_level) level.pose.rotation = Pose::Rotation(std::cos(heading / 2.0), 0.0, 0.0, std::sin(heading / 2.0));
+  if (!is_level) level.pose.rotation = aboutZ(heading);
   const Eigen::Matrix3d to_level = level.pose.rotation.toRotationMatrix().transpose() * rotation;
   Heights heights;
   for (Eigen::Vector3d& point : level.points) {
@@ -104,16 +105,22 @@ Scan levelled(const Scan& scan, const PlanarScanOptions& options) {
   return level;
 }
 
+Pose poseOf(const LaserScan& beams) {
+  return {{beams.pose.translation.x(), beams.pose.translation.y(), 0.0}, aboutZ(beams.pose.heading)};
+}
+
+Eigen::Vector3d pointOf(const LaserScan& beams, std::size_t beam) {
+  if (!beams.returned(beam)) return Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  const double range = beams.ranges[beam], bearing = beams.bearings[beam];
+  return {range * std::cos(bearing), range * std::sin(bearing), 0.0};
+}
+
 Scan scanOfBeams(const LaserScan& beams) {
   Scan scan;
-  const double half = beams.pose.heading / 2.0;
-  scan.pose.translation << beams.pose.translation, 0.0;
-  scan.pose.rotation = Pose::Rotation(std::cos(half), 0.0, 0.0, std::sin(half));
+  scan.pose = poseOf(beams);
   scan.time = beams.time;
-  for (std::size_t i = 0; i < beams.ranges.size(); ++i) {
-    const double range = beams.returned(i) ? beams.ranges[i] : std::numeric_limits<double>::quiet_NaN();
-    scan.points.emplace_back(range * std::cos(beams.bearings[i]), range * std::sin(beams.bearings[i]), 0.0 * range);
-  }
+  scan.points.reserve(beams.ranges.size());
+  for (std::size_t i = 0; i < beams.ranges.size(); ++i) scan.points.push_back(pointOf(beams, i));
   return scan;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
+#include <cstddef>
 #include <memory>
 #include <string>
 
@@ -24,7 +26,11 @@ std::string notPlanarText(double lowest, double highest);
 /// there is no `slice` and the heights of the points differ by more than kMaxPlanarHeight.
 GAUSSMAP_API Scan levelled(const Scan& scan, const PlanarScanOptions& options = {});
 
-/// Returns the beams of planarScan() as a scan with z = 0. A beam without a return is NaN.
+/// Returns the pose of a sweep as a pose in space, with z = 0.
+GAUSSMAP_API Pose poseOf(const LaserScan& beams);
+/// Returns the end of a beam in the sensor frame, with z = 0 [m]; NaN if it has no return.
+GAUSSMAP_API Eigen::Vector3d pointOf(const LaserScan& beams, std::size_t beam);
+/// Returns a sweep as a scan with one point per beam, see pointOf().
 GAUSSMAP_API Scan scanOfBeams(const LaserScan& beams);
 
 /// Returns scans unchanged, but checks that each is that of a planar laser. ScanReader::requireWhole() throws FileError

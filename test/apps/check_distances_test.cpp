@@ -58,7 +58,7 @@ TEST(FlannDistances, AreKnownOnPaper) {
   EXPECT_EQ(flannDistances({{3, 4, 0}, {0, 0, 2}}, {{0, 0, 0}, {0, 0, 5}}, 1), (std::vector<double>{5.0, 2.0}));
 }
 
-/// Returns the message of the error, or "" if there is none.
+/// Returns the message of the error; empty if `check` throws no error.
 std::string errorOf(const std::vector<double>& distances, const std::vector<double>& again) {
   try {
     requireSame(distances, again, "subject");

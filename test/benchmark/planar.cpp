@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "clock.h"
+#include "core/about_z.h"
+#include "core/quantile.h"
 #include "gaussmap/core/scans.h"
 #include "gaussmap/evaluation/hausdorff.h"
 #include "gaussmap/map/sampling.h"
@@ -20,6 +22,7 @@
 #include "gaussmap/mapping/refine.h"
 #include "gaussmap/registration/registration.h"
 #include "segment_data.h"
+#include "segments/level_scan.h"
 #include "simulation/simulation.h"
 #include "simulation/worlds.h"
 #include "subcommands.h"
@@ -29,30 +32,8 @@ namespace {
 
 const MapOptions kPlanarGrid{0.05, 10, 3, 0.0};
 
-Pose poseOf(double x, double y, double heading) {
-  Pose pose;
-  pose.translation = {x, y, 0.0};
-  pose.rotation = {std::cos(0.5 * heading), 0.0, 0.0, std::sin(0.5 * heading)};
-  return pose;
-}
-
-/// Returns a sweep as a scan: one row, with NaN for beams without a return.
-Scan scanOf(const LaserScan& sweep) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  Scan scan;
-  for (std::size_t i = 0; i < sweep.ranges.size(); ++i) {
-    const double range = sweep.returned(i) ? sweep.ranges[i] : kNone;
-    scan.points.emplace_back(range * std::cos(sweep.bearings[i]), range * std::sin(sweep.bearings[i]), 0.0 * range);
-  }
-  scan.pose = poseOf(sweep.pose.translation.x(), sweep.pose.translation.y(), sweep.pose.heading);
-  scan.columns = static_cast<int>(scan.points.size());
-  return scan;
-}
-
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+double percentileOf(std::vector<double> values, std::size_t percent) {
+  return values.empty() ? 0.0 : detail::percentile(values, percent);
 }
 
 /// The share of the finest cells that the on-line map kept, of those that at least `scans` scans have hit.
@@ -113,7 +94,7 @@ void registerScans(const std::vector<Scan>& scans) {
       const double heading = 2.0 * std::atan2(truth.rotation.z(), truth.rotation.w());
       const double x = truth.translation.x() + shift * (2.0 * random.uniform() - 1.0);
       const double y = truth.translation.y() + shift * (2.0 * random.uniform() - 1.0);
-      const Pose guess = poseOf(x, y, heading + turn * (2.0 * random.uniform() - 1.0));
+      const Pose guess{{x, y, 0.0}, detail::aboutZ(heading + turn * (2.0 * random.uniform() - 1.0))};
       const Pose found = registerScan(scans[i].points, map, guess, options).pose;
       errors.push_back((found.translation - truth.translation).norm());
       turns.push_back(Eigen::Quaterniond(found.rotation).angularDistance(Eigen::Quaterniond(truth.rotation)));
@@ -121,8 +102,8 @@ void registerScans(const std::vector<Scan>& scans) {
     const double seconds = (processorSeconds() - start) / static_cast<double>(std::max<std::size_t>(1, errors.size()));
     const auto far = std::count_if(errors.begin(), errors.end(), [](double error) { return error > 0.1; });
     std::printf("| %.2f m, %.0f deg | %zu | %.3f m | %.3f m | %td | %.2f deg | %.2f |\n", shift, turn * 180.0 / M_PI,
-                errors.size(), quantile(errors, 0.5), quantile(errors, 0.95), far, quantile(turns, 0.5) * 180.0 / M_PI,
-                1e3 * seconds);
+                errors.size(), percentileOf(errors, 50), percentileOf(errors, 95), far,
+                percentileOf(turns, 50) * 180.0 / M_PI, 1e3 * seconds);
   }
 }
 
@@ -185,7 +166,7 @@ void addPlanar(CLI::App& app) {
   command.callback([folder] {
     std::vector<Scan> scans;
     for (const LaserScan& sweep : folder->empty() ? scanPlan(0.01, 0.0, 1) : readLogIn(*folder))
-      scans.push_back(scanOf(sweep));
+      scans.push_back(detail::scanOfBeams(sweep));
     mapOnLine(scans);
     registerScans(scans);
     compareSlice();

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/about_z.h"
 #include "gaussmap/editing/transform_map.h"
 #include "gaussmap/mapping/build.h"
 #include "gaussmap/mapping/refine.h"
@@ -38,10 +39,7 @@ Walls corridorWalls() {
 }
 
 Pose planarPose(double x, double y, double heading) {
-  Pose pose;
-  pose.translation = {x, y, 0.0};
-  pose.rotation = {std::cos(0.5 * heading), 0.0, 0.0, std::sin(0.5 * heading)};
-  return pose;
+  return {{x, y, 0.0}, detail::aboutZ(heading)};
 }
 
 double headingOf(const Pose& pose) {

@@ -10,21 +10,16 @@
 
 #include "gaussmap/io/logs/carmen_log.h"
 #include "gaussmap/segments/laser_scan.h"
+#include "io/logs/carmen_scans.h"
 
 namespace gaussmap::app {
 namespace {
-
-constexpr std::size_t kMaxWarnings = 5;  // per log
 
 LaserScans readLogs(const std::vector<std::string>& paths) {
   LaserScans all;
   for (const std::string& path : paths) {
     const CarmenLog log = readCarmenLog(path);
-    const std::size_t shown = std::min(log.faults.size(), kMaxWarnings);
-    for (std::size_t i = 0; i < shown; ++i)
-      warn(path + ": line " + std::to_string(log.faults[i].line) + " is left out: " + log.faults[i].what);
-    const std::size_t more = log.faults.size() - shown + log.more_faults;
-    if (more > 0) warn(path + ": " + std::to_string(more) + " more lines are left out");
+    for (const std::string& warning : detail::warningsOf(log)) warn(path + ": " + warning);
     for (std::size_t i = 0; i < log.scans.size(); ++i) {
       all.scans.push_back(log.scans[i]);
       all.names.push_back(std::filesystem::path(path).filename().string() + ":" + std::to_string(i));

@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "gaussmap/io/logs/carmen_log.h"
 #include "io/files/text.h"
+#include "segments/level_scan.h"
 
 namespace gaussmap::detail {
 namespace {
@@ -29,14 +28,10 @@ class SweepReader : public ScanReader {
 
   std::size_t size() const override { return scan_.ranges.size(); }
   void read(std::size_t first, PointBlock<3>& block) const override {
-    constexpr double kNoPoint = std::numeric_limits<double>::quiet_NaN();
     block.size = first < size() ? std::min(PointBlock<3>::kCapacity, size() - first) : 0;
     for (std::size_t i = 0; i < block.size; ++i) {
-      const bool is_point = scan_.returned(first + i);
-      const double range = scan_.ranges[first + i], bearing = scan_.bearings[first + i];
-      block.coordinate[0][i] = is_point ? range * std::cos(bearing) : kNoPoint;
-      block.coordinate[1][i] = is_point ? range * std::sin(bearing) : kNoPoint;
-      block.coordinate[2][i] = is_point ? 0.0 : kNoPoint;
+      const Eigen::Vector3d point = pointOf(scan_, first + i);
+      for (int axis = 0; axis < 3; ++axis) block.coordinate[axis][i] = point(axis);
     }
   }
 
@@ -64,9 +59,7 @@ class CarmenScans : public ScanFile {
     FileScanInfo info;
     info.name = size() > 1 ? "scan " + std::to_string(scan) : "";
     info.points = sweep.ranges.size();
-    const double half = sweep.pose.heading / 2.0;
-    info.pose = Pose{{sweep.pose.translation.x(), sweep.pose.translation.y(), 0.0},
-                     Pose::Rotation(std::cos(half), 0.0, 0.0, std::sin(half))};
+    info.pose = poseOf(sweep);
     constexpr double kLargest = 4e9;  // [s]; nanoseconds of larger times are out of range
     if (has_times_ && std::abs(*sweep.time) < kLargest)
       info.time = std::chrono::nanoseconds(std::llround(*sweep.time * 1e9));
@@ -77,15 +70,7 @@ class CarmenScans : public ScanFile {
   }
   std::string poseSource() const override { return "pose of the laser in each line of the log"; }
   std::size_t memoryOf(std::size_t) const override { return 0; }
-  std::vector<std::string> warnings() const override {
-    std::vector<std::string> warnings;
-    const std::size_t shown = std::min(log_->faults.size(), kMaxWarnings);
-    for (std::size_t i = 0; i < shown; ++i)
-      warnings.push_back("line " + std::to_string(log_->faults[i].line) + " is left out: " + log_->faults[i].what);
-    const std::size_t more = log_->faults.size() - shown + log_->more_faults;
-    if (more > 0) warnings.push_back(std::to_string(more) + " more lines are left out");
-    return warnings;
-  }
+  std::vector<std::string> warnings() const override { return warningsOf(*log_); }
 
  private:
   std::shared_ptr<const CarmenLog> log_;
@@ -106,6 +91,16 @@ bool isCarmenText(std::string_view start) {
     return is_message && (words.size() > 1 || is_cut);
   }
   return false;
+}
+
+std::vector<std::string> warningsOf(const CarmenLog& log) {
+  std::vector<std::string> warnings;
+  const std::size_t shown = std::min(log.faults.size(), kMaxWarnings);
+  for (std::size_t i = 0; i < shown; ++i)
+    warnings.push_back("line " + std::to_string(log.faults[i].line) + " is left out: " + log.faults[i].what);
+  const std::size_t more = log.faults.size() - shown + log.more_faults;
+  if (more > 0) warnings.push_back(std::to_string(more) + " more lines are left out");
+  return warnings;
 }
 
 std::unique_ptr<ScanFile> openCarmenScans(const std::filesystem::path& path) {

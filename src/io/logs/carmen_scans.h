@@ -3,8 +3,11 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <string_view>
+#include <vector>
 
+#include "gaussmap/io/logs/carmen_log.h"
 #include "gaussmap/version.h"
 #include "io/formats/scan_file.h"
 
@@ -14,6 +17,9 @@ namespace gaussmap::detail {
 /// first line that is neither empty nor a comment must be a message, such as "FLASER 180 ...". Or a line before it is
 /// the comment "# message formats defined".
 GAUSSMAP_API bool isCarmenText(std::string_view start);
+
+/// Returns one text per damaged line of a log, and the number of the others if there are many.
+GAUSSMAP_API std::vector<std::string> warningsOf(const CarmenLog& log);
 
 /// Opens a log of CARMEN, plain or gzip, as a file with one scan per sweep of the laser, see readCarmenLog().
 ///

@@ -25,8 +25,9 @@ inline void readAll(const detail::ScanFile& file) {
   for (const std::string& name : reader->valueNames()) EXPECT_EQ(reader->values(name).size(), reader->size());
 }
 
-/// Returns x, y and z of all points of a scan.
-inline std::vector<std::vector<double>> coordinatesOf(const ScanReader& reader) {
+/// Returns x, y and z of all points of a scan. Reader: ScanReader or PcdReader.
+template <typename Reader>
+std::vector<std::vector<double>> coordinatesOf(const Reader& reader) {
   std::vector<std::vector<double>> axes(3);
   PointBlock<3> block;
   for (std::size_t first = 0; reader.read(first, block), block.size > 0; first += block.size)

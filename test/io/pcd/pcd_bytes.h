@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gaussmap/io/pcd/pcd_reader.h"
+#include "io/formats/scan_values.h"
 
 // Writes PCD files for tests without the library.
 namespace gaussmap::test {
@@ -46,12 +47,7 @@ inline std::string compressedBody(const std::string& bytes) {
 
 /// Returns all points of a file, axis by axis.
 inline std::vector<std::vector<double>> readAll(const PcdReader& reader) {
-  std::vector<std::vector<double>> axes(3);
-  PointBlock<3> block;
-  for (std::size_t first = 0; reader.read(first, block), block.size > 0; first += block.size)
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      axes[axis].insert(axes[axis].end(), block.coordinate[axis], block.coordinate[axis] + block.size);
-  return axes;
+  return coordinatesOf(reader);
 }
 
 }  // namespace gaussmap::test
