@@ -188,6 +188,7 @@ TEST_F(PlanarSlice, IsNeededForScansInSpace) {
   expectDataError("scan00.pcd: not a scan of a planar laser", joined(build, {"--online"}));
   expectDataError("(--slice Z0 Z1)", joined(build, {"--max-memory", "10M"}));
   expectDataError("outside --slice", joined(build, {"--slice", "50", "60"}));
+  expectDataError("no point lies between the heights of --slice", joined(build, {"--online", "--slice", "50", "60"}));
   expectUsageError("--slice: only for planar maps; add --planar",
                    {"pcd2map", scans(), "-o", own("map.gmap"), "--slice", "1", "2"});
   expectUsageError("--slice: the second height is below the first", joined(build, {"--slice", "2", "1"}));
@@ -197,6 +198,7 @@ TEST_F(PlanarSlice, OnlineUsesTheNearestPointOfEveryDirection) {
   const std::string said = succeed(
       {"pcd2map", "--planar", "--online", "--slice", "1", "2", scans(), "-o", own("map.gmap"), "--resolution", "0.2"});
   EXPECT_NE(said.find("6 scans"), std::string::npos) << said;
+  EXPECT_EQ(said.find("left out"), std::string::npos) << "beams without a point are not points: " << said;
   const Json info = infoOf(own("map.gmap"));
   EXPECT_EQ(info["occupancy"], true);
   EXPECT_GT(info["scales"][0]["weight"], 6 * 300.0);

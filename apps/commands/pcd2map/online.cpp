@@ -82,6 +82,10 @@ WrittenMap buildOnline(const Pcd2mapOptions& options, const Scans& scans, const 
     deleted += statistics.deleted;
     bar.show({i + 1, scans.size(), counts.accepted, 0});
   }
+  if (!options.slice.empty()) {
+    counts.read -= counts.non_finite;  // these are beams without a point in the slice
+    counts.non_finite = 0;
+  }
   requirePoints(counts, scans, options.slice);
   if (!online.stats.empty()) writeText(online.stats, table.text());
   if (!online.removed.empty()) writeRemoved(online.removed, removed);
