@@ -132,7 +132,8 @@ RegistrationResult registerOne(const Registration<D>& all, std::size_t i, const 
   detail::dropPoints(detail::limitsOf(accumulateOptions(command.input, all.map.grid().side(0), 0)), scan);
   if (D == 2) scan = planarPart(std::move(scan), guess, subject, command.slice);
   if (std::none_of(scan.points.begin(), scan.points.end(), isReturn))
-    throw FileError(subject.path, (subject.name.empty() ? "" : subject.name + ": ") + "no usable point");
+    throw FileError(subject.path, (subject.name.empty() ? "" : subject.name + ": ") + "no usable point" +
+                                      (command.slice.empty() ? "" : " between the heights of --slice"));
   return registerScan(scan.points, all.map, guess, command.options);
 }
 

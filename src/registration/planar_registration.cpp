@@ -59,13 +59,10 @@ RegistrationResult alignInPlane(const GaussianMap<2>& source, const GaussianMap<
   do {
     found = searchInPlane(scan, map, {Vector<2>::Zero(), start.heading}, origin, held, options);
     result.iterations += found.iterations;
-    if (found.equations.met < kFewestPairs || !(found.surfaces.trace() > 0.0)) {
-      result.least_observable.setZero();
-      return result;
-    }
-    const Eigen::Vector3d least = leastObservable(found.surfaces, scan.range);
-    result.least_observable << least.x(), least.y(), 0.0, 0.0, 0.0, least.z();
+    if (found.equations.met < kFewestPairs || !(found.surfaces.trace() > 0.0)) return result;
   } while (held.hold(found.surfaces, options.degenerate));
+  const Eigen::Vector3d least = leastObservable(found.surfaces, scan.range);
+  result.least_observable << least.x(), least.y(), 0.0, 0.0, 0.0, least.z();
   result.pose.translation.head<2>() = origin + found.pose.position;
   result.pose.rotation = start.at(found.pose.heading);
   result.converged = found.converged;

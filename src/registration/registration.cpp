@@ -113,12 +113,9 @@ RegistrationResult align(const GaussianMap<3>& source_map, const GaussianMap<3>&
   do {
     found = search(source, scales, start, held, options);
     result.iterations += found.iterations;
-    if (found.equations.met < kFewestPairs || !(found.surfaces.trace() > 0.0)) {
-      result.least_observable.setZero();
-      return result;
-    }
-    result.least_observable = leastObservable(found.surfaces, source.range);
+    if (found.equations.met < kFewestPairs || !(found.surfaces.trace() > 0.0)) return result;
   } while (held.hold(found.surfaces, options.degenerate));
+  result.least_observable = leastObservable(found.surfaces, source.range);
   result.pose = found.pose;
   result.pose.translation += origin;
   result.covariance = held.covarianceOf(found.equations.information);

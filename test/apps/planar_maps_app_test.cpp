@@ -169,6 +169,7 @@ TEST_F(PlanarMaps, RegisterTakesASliceOfScansInSpace) {
   EXPECT_NEAR(found["translation"][0], pose.translation.x(), 0.03);
   EXPECT_NEAR(found["translation"][1], pose.translation.y(), 0.03);
   expectDataError("(--slice Z0 Z1)", {"register", scan, map});
+  expectDataError("no usable point between the heights of --slice", {"register", scan, map, "--slice", "50", "60"});
   expectUsageError("--slice: only for planar maps", {"register", scan, world("space.gmap"), "--slice", "1", "2"});
   expectDataError("cannot be combined with a planar map", {"register", world("space.gmap"), map});
 }
