@@ -127,6 +127,10 @@ Option Command::flag(const std::string& name, bool& value, const std::string& he
   return Option(app_->add_flag(name, value, help));
 }
 
+Option Command::preset(const std::string& name, const std::function<void()>& apply, const std::string& help) {
+  return Option(app_->add_flag_callback(name, apply, help));  // CLI11 sets the options in the order they were added
+}
+
 Option Command::text(const std::string& name, std::string& value, const std::string& help) {
   return Option(app_->add_option(name, value, help)->capture_default_str());
 }

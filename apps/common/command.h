@@ -52,6 +52,9 @@ class Command {
   Command(CLI::App& program, const Help& help);  ///< a program without commands
 
   Option flag(const std::string& name, bool& value, const std::string& help);
+  /// A flag that sets other defaults: `apply` writes them into the variables of the options. An option overrides them
+  /// if it is given and was added after this one. So add the flag before them, and after the options that `apply` reads.
+  Option preset(const std::string& name, const std::function<void()>& apply, const std::string& help);
   Option text(const std::string& name, std::string& value, const std::string& help);
   Option texts(const std::string& name, std::vector<std::string>& values, const std::string& help);
   /// T: int, std::size_t, double, or std::optional of one of them. Floating-point ranges refuse NaN.
