@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <iterator>
 #include <limits>
 
@@ -13,73 +14,111 @@ namespace {
 
 constexpr double kWidth = 640, kHeight = 420, kLeft = 70, kRight = 190, kTop = 20, kBottom = 50;
 constexpr const char* kCurveColours[] = {"#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e"};
+constexpr double kSmallest = 1e-9;  // replaces zero on a logarithmic axis
 
-/// A logarithmic axis that begins and ends at powers of ten.
-struct Axis {
-  double low = std::numeric_limits<double>::infinity(), high = 0.0;  // values; powers of ten after close()
-  double from = 0.0, to = 1.0;                                       // pixels
+/// An axis of the picture: the values at its ends, and their places [pixels].
+class PictureAxis {
+ public:
+  PictureAxis(const PlotAxis& axis, double from, double to)
+      : is_logarithmic_(axis.scale == AxisScale::Logarithmic), from_(from), to_(to) {}
+
   void add(double value) {
-    low = std::min(low, value);
-    high = std::max(high, value);
+    low_ = std::min(low_, scaled(value));
+    high_ = std::max(high_, scaled(value));
   }
+  /// Extends the axis to round values. Call it after all values have been added.
   void close() {
-    low = std::floor(std::log10(low));
-    high = std::max(std::ceil(std::log10(high)), low + 1.0);
+    if (is_logarithmic_) {
+      low_ = std::floor(low_);
+      high_ = std::max(std::ceil(high_), low_ + 1.0);
+      step_ = 1.0;
+      return;
+    }
+    low_ = 0.0;
+    if (!(high_ > 0.0)) high_ = 1.0;
+    step_ = roundLength(high_ / 4.0);
+    high_ = step_ * std::ceil(high_ / step_ - 1e-9);
   }
-  double at(double value) const { return from + (std::log10(value) - low) / (high - low) * (to - from); }
+  double from() const { return from_; }
+  double to() const { return to_; }
+  double at(double value) const { return place(scaled(value)); }
+  /// Calls body(value, place) for each labelled value.
+  template <typename Body>
+  void forTicks(const Body& body) const {
+    const int count = static_cast<int>(std::lround((high_ - low_) / step_));
+    for (int i = 0; i <= count; ++i) {
+      const double tick = low_ + i * step_;
+      body(is_logarithmic_ ? std::pow(10.0, tick) : tick, place(tick));
+    }
+  }
+
+ private:
+  double scaled(double value) const { return is_logarithmic_ ? std::log10(std::max(value, kSmallest)) : value; }
+  double place(double scaled) const { return from_ + (scaled - low_) / (high_ - low_) * (to_ - from_); }
+
+  bool is_logarithmic_;
+  double from_, to_;
+  double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;
+  double step_ = 1.0;
 };
 
-void drawAxes(Svg& svg, const Axis& x, const Axis& y) {
-  for (int decade = int(x.low); decade <= int(x.high); ++decade) {
-    const double value = std::pow(10, decade);
-    svg << "<path d='M" << x.at(value) << ' ' << y.from << "V" << y.to << "' stroke='#ddd'/>\n";
-    svg.text(x.at(value), y.from + 18, numberText(value), "text-anchor='middle'");
-  }
-  for (int decade = int(y.low); decade <= int(y.high); ++decade) {
-    const double value = std::pow(10, decade);
-    svg << "<path d='M" << x.from << ' ' << y.at(value) << "H" << x.to << "' stroke='#ddd'/>\n";
-    svg.text(x.from - 8, y.at(value) + 4, numberText(value), "text-anchor='end'");
-  }
-  svg.text((x.from + x.to) / 2, kHeight - 10, "Gaussians of the scale", "text-anchor='middle'");
-  svg.text(-(y.from + y.to) / 2, 16, "distance of samples to the finest scale [m]",
-           "transform='rotate(-90)' text-anchor='middle'");
+void drawAxes(Svg& svg, const LinePlot& plot, const PictureAxis& x, const PictureAxis& y) {
+  x.forTicks([&](double value, double place) {
+    svg << "<path d='M" << place << ' ' << y.from() << "V" << y.to() << "' stroke='#ddd'/>\n";
+    svg.text(place, y.from() + 18, numberText(value), "text-anchor='middle'");
+  });
+  y.forTicks([&](double value, double place) {
+    svg << "<path d='M" << x.from() << ' ' << place << "H" << x.to() << "' stroke='#ddd'/>\n";
+    svg.text(x.from() - 8, place + 4, numberText(value), "text-anchor='end'");
+  });
+  svg.text((x.from() + x.to()) / 2, kHeight - 10, plot.x.title, "text-anchor='middle'");
+  svg.text(-(y.from() + y.to()) / 2, 16, plot.y.title, "transform='rotate(-90)' text-anchor='middle'");
 }
 
 }  // namespace
 
-void plotCurves(const std::vector<ErrorCurve>& curves, const std::filesystem::path& path) {
-  constexpr double kMinError = 1e-9;  // [m]; replaces zero, which has no logarithm
-  Axis x, y;
-  for (const ErrorCurve& curve : curves)
-    for (const ErrorPoint& point : curve.points) {
-      x.add(static_cast<double>(point.gaussians));
-      for (const double error : {point.q95, point.mean}) y.add(std::max(error, kMinError));
+void drawPlot(const LinePlot& plot, const std::filesystem::path& path) {
+  PictureAxis x(plot.x, kLeft, kWidth - kRight), y(plot.y, kHeight - kBottom, kTop);
+  for (const PlotLine& line : plot.lines)
+    for (const Vector<2>& point : line.points) {
+      x.add(point.x());
+      y.add(point.y());
     }
   x.close();
   y.close();
-  x.from = kLeft;
-  x.to = kWidth - kRight;
-  y.from = kHeight - kBottom;
-  y.to = kTop;
   Svg svg(kWidth, kHeight);
-  drawAxes(svg, x, y);
+  drawAxes(svg, plot, x, y);
   double legend = kTop + 10;
-  std::size_t number = 0;
-  for (const ErrorCurve& curve : curves) {
-    const char* colour = kCurveColours[number++ % std::size(kCurveColours)];
-    for (const bool is_mean : {false, true}) {
-      svg << "<polyline fill='none' stroke-width='2' stroke='" << colour << (is_mean ? "' stroke-dasharray='5 4" : "")
-          << "' points='";
-      for (const ErrorPoint& point : curve.points)
-        svg << x.at(static_cast<double>(point.gaussians)) << ','
-            << y.at(std::max(is_mean ? point.mean : point.q95, kMinError)) << ' ';
-      svg << "'/>\n";
-      svg.text(x.to + 12, legend, "scale " + std::to_string(curve.scale) + (is_mean ? ", mean (dashed)" : ", 95 %"),
-               std::string("fill='") + colour + "'");
-      legend += 18;
-    }
+  for (const PlotLine& line : plot.lines) {
+    const char* const colour = kCurveColours[static_cast<std::size_t>(line.colour) % std::size(kCurveColours)];
+    svg << "<polyline fill='none' stroke-width='2' stroke='" << colour << (line.dashed ? "' stroke-dasharray='5 4" : "")
+        << "' points='";
+    for (const Vector<2>& point : line.points) svg << x.at(point.x()) << ',' << y.at(point.y()) << ' ';
+    svg << "'/>\n";
+    if (line.name.empty()) continue;
+    svg.text(x.to() + 12, legend, line.name, std::string("fill='") + colour + "'");
+    legend += 18;
   }
   svg.save(path);
+}
+
+void plotCurves(const std::vector<ErrorCurve>& curves, const std::filesystem::path& path) {
+  LinePlot plot;
+  plot.x = {"Gaussians of the scale", AxisScale::Logarithmic};
+  plot.y = {"distance of samples to the finest scale [m]", AxisScale::Logarithmic};
+  int number = 0;
+  for (const ErrorCurve& curve : curves) {
+    const std::string name = "scale " + std::to_string(curve.scale);
+    PlotLine q95{name + ", 95 %", {}, number, false}, mean{name + ", mean (dashed)", {}, number, true};
+    for (const ErrorPoint& point : curve.points) {
+      q95.points.emplace_back(static_cast<double>(point.gaussians), point.q95);
+      mean.points.emplace_back(static_cast<double>(point.gaussians), point.mean);
+    }
+    plot.lines.push_back(q95);
+    plot.lines.push_back(mean);
+    ++number;
+  }
+  drawPlot(plot, path);
 }
 
 }  // namespace gaussmap::app

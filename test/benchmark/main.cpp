@@ -32,6 +32,7 @@ int main(int argc, char** argv) try {
   addBoxLoad(app);
   addPoseCheck(app);
   addPlanar(app);
+  addPapers(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

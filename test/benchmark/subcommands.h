@@ -26,5 +26,6 @@ void addWideScans(CLI::App& app);
 void addBoxLoad(CLI::App& app);
 void addPoseCheck(CLI::App& app);
 void addPlanar(CLI::App& app);
+void addPapers(CLI::App& app);
 
 }  // namespace gaussmap::benchmark
