@@ -37,11 +37,20 @@ void Report::table(const std::vector<std::string>& titles, const std::vector<std
   addTable(body_, titles, rows);
 }
 
+std::filesystem::path Report::pictureFile(const std::string& name) const {
+  const std::filesystem::path folder = page_.parent_path() / page_.stem();
+  std::filesystem::create_directories(folder);
+  return folder / (name + ".svg");
+}
+
+void Report::showPicture(const std::string& name, const std::string& caption) {
+  body_ << "![" << caption << "](" << (page_.stem() / (name + ".svg")).generic_string() << ")\n\n*" << caption
+        << "*\n\n";
+}
+
 void Report::picture(const app::LinePlot& plot, const std::string& name, const std::string& caption) {
-  const std::filesystem::path folder = page_.stem();
-  std::filesystem::create_directories(page_.parent_path() / folder);
-  app::drawPlot(plot, page_.parent_path() / folder / (name + ".svg"));
-  body_ << "![" << caption << "](" << (folder / (name + ".svg")).generic_string() << ")\n\n*" << caption << "*\n\n";
+  app::drawPlot(plot, pictureFile(name));
+  showPicture(name, caption);
 }
 
 void Report::claim(const Claim& claim) {

@@ -31,6 +31,9 @@ class Report {
   void table(const std::vector<std::string>& titles, const std::vector<std::vector<std::string>>& rows);
   /// Writes NAME.svg and shows it with a caption.
   void picture(const app::LinePlot& plot, const std::string& name, const std::string& caption);
+  /// Returns the file NAME.svg of a picture, and makes its folder. showPicture() then shows it.
+  std::filesystem::path pictureFile(const std::string& name) const;
+  void showPicture(const std::string& name, const std::string& caption);
   void claim(const Claim& claim);
 
   /// Writes the page: `preface`, the claims, and everything that was added. Throws FileError if it cannot be written.
