@@ -3,10 +3,20 @@
 
 #include <algorithm>
 
+#include "sensor/default_lengths.h"
+
 namespace gaussmap::detail {
+namespace {
+
+/// Returns a slightly larger radius, so that rounding does not exclude a point of the ball.
+double withRounding(double radius) {
+  return radius * (1.0 + 1e-6);
+}
+
+}  // namespace
 
 Culling::Culling(const RangeImage& image, const VisibilityOptions& options)
-    : image_(image), tolerance_(options.tolerance) {
+    : image_(image), tolerance_(toleranceOf(options)) {
   Level level{image.rows(), image.columns(), {}};
   for (int row = 0; row < level.rows; ++row)
     for (int column = 0; column < level.columns; ++column) {
@@ -40,12 +50,9 @@ float Culling::farthestIn(int first_row, int last_row, int first_column, int las
   return farthest;
 }
 
-bool Culling::mayPassThrough(const Eigen::Vector3d& centre, double ball_radius) const {
-  const double radius = ball_radius * (1.0 + 1e-6);  // rounding must not exclude a point of the ball
-  const double nearest = std::max(0.0, centre.norm() - radius);
-  if (nearest + tolerance_ >= double(image_.farthest())) return false;
+double Culling::farthestAround(const Eigen::Vector3d& centre, double radius) const {
   const PixelBox box = pixelsOf(image_.projection(), centre, radius);
-  if (box.empty()) return false;
+  if (box.empty()) return 0.0;
   // visibilityOf() also uses the neighbours of a point's pixel.
   const int first_row = std::max(0, box.first_row - 1), last_row = std::min(image_.rows() - 1, box.last_row + 1);
   int first = box.first_column - 1, last = box.last_column + 1;
@@ -65,7 +72,22 @@ bool Culling::mayPassThrough(const Eigen::Vector3d& centre, double ball_radius) 
     last = std::min(columns - 1, last);
   }
   if (first <= last) farthest = std::max(farthest, farthestIn(first_row, last_row, first, last));
-  return double(farthest) > nearest + tolerance_;
+  return double(farthest);
+}
+
+bool Culling::mayPassThrough(const Eigen::Vector3d& centre, double ball_radius) const {
+  const double radius = withRounding(ball_radius);
+  const double nearest = std::max(0.0, centre.norm() - radius);
+  if (nearest + tolerance_ >= double(image_.farthest())) return false;
+  return farthestAround(centre, radius) > nearest + tolerance_;
+}
+
+bool Culling::maySee(const Eigen::Vector3d& centre, double ball_radius) const {
+  const double radius = withRounding(ball_radius);
+  const double nearest = std::max(0.0, centre.norm() - radius);
+  if (nearest - tolerance_ > double(image_.farthest())) return false;
+  const double farthest = farthestAround(centre, radius);
+  return farthest > 0.0 && farthest >= nearest - tolerance_;
 }
 
 }  // namespace gaussmap::detail

@@ -7,19 +7,21 @@
 #include <limits>
 #include <optional>
 
+#include "sensor/default_lengths.h"
+
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
-/// Distance of the tested pixels of a camera [m, at the point]. Its pixels are narrower than those of a lidar: without
-/// this distance, a pose error of 2 cm would show free space where the edge of a thing is.
-constexpr double kLateral = 0.03;
 constexpr double kDeviations = 3.0;  // of the noise
 
-/// Returns the number of pixels from one tested pixel to the next.
-int stepAt(const Projection& projection, const Eigen::Vector3d& point) {
+/// Returns the number of pixels from one tested pixel to the next. The pixels of a camera are narrower than those of a
+/// lidar: without `spacing` [m, at the point], a pose error of 2 cm would show free space where the edge of a thing is.
+int stepAt(const Projection& projection, const Eigen::Vector3d& point, double spacing) {
   const auto* const camera = std::get_if<PlanarProjection>(&projection);
   if (!camera) return 1;
-  const double step = std::ceil(std::max(camera->fx, camera->fy) * kLateral / point.z());
+  const double step = std::ceil(std::max(camera->fx, camera->fy) * spacing / point.z());
   return static_cast<int>(std::clamp(step, 1.0, std::max(1.0, 0.25 * std::min(camera->rows, camera->columns))));
 }
 
@@ -44,7 +46,7 @@ double distanceToSurface(const Eigen::Vector3d& point, const Eigen::Vector3d& a,
 
 /// Returns the minimum distance of a point from the surfaces between two pixels around it [m]. The two pixels lie one
 /// above the other; in an image of one row, side by side.
-double clearanceOf(const RangeImage& image, const Eigen::Vector3d& point, Pixel pixel, int step) {
+double distanceToBeams(const RangeImage& image, const Eigen::Vector3d& point, Pixel pixel, int step) {
   double least = std::numeric_limits<double>::infinity();
   const auto consider = [&](int row_a, int column_a, int row_b, int column_b) {
     if (image.around(row_a, column_a).empty() || image.around(row_b, column_b).empty()) return;
@@ -68,7 +70,7 @@ double clearanceOf(const RangeImage& image, const Eigen::Vector3d& point, Pixel 
 Visibility visibilityOf(const RangeImage& image, const Eigen::Vector3d& point, const VisibilityOptions& options) {
   const std::optional<Pixel> pixel = pixelOf(image.projection(), point);
   if (!pixel) return Visibility::OutOfView;
-  const int step = stepAt(image.projection(), point), reach = image.rows() > 1 ? step : 0;
+  const int step = stepAt(image.projection(), point, spacingOf(options)), reach = image.rows() > 1 ? step : 0;
   int seen = 0;
   float nearest = std::numeric_limits<float>::infinity();
   for (int row = pixel->row - reach; row <= pixel->row + reach; row += step)
@@ -79,13 +81,13 @@ Visibility visibilityOf(const RangeImage& image, const Eigen::Vector3d& point, c
       nearest = std::min(nearest, ranges.nearest);
     }
   if (2 * seen < (image.rows() > 1 ? 9 : 3)) return Visibility::NoEvidence;
-  const double range = point.norm();
-  if (nearest < range - options.tolerance) return Visibility::Hidden;
-  if (nearest <= range + options.tolerance) return Visibility::AtSurface;
+  const double range = point.norm(), tolerance = toleranceOf(options);
+  if (nearest < range - tolerance) return Visibility::Hidden;
+  if (nearest <= range + tolerance) return Visibility::AtSurface;
   const double margin = noiseMargin(image.projection(), options, point, range, double(nearest));
-  if (nearest <= range + options.tolerance + margin) return Visibility::AtSurface;
-  return clearanceOf(image, point, *pixel, step) < options.clearance + margin ? Visibility::AtSurface
-                                                                              : Visibility::PassedThrough;
+  if (nearest <= range + tolerance + margin) return Visibility::AtSurface;
+  const bool is_near = distanceToBeams(image, point, *pixel, step) < clearanceOf(options) + margin;
+  return is_near ? Visibility::AtSurface : Visibility::PassedThrough;
 }
 
 }  // namespace gaussmap

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // gaussmap_benchmark moving-points DIR...: compares how gaussmap clean, pcd2map --online and OctoMap remove moving
-// objects from the same scans, with one thread, at 0.2 and 0.1 m. OctoMap uses insertPointCloud with rays; points of
-// free cells are removed. Prints SA, DA and AA in percent against the field `label` (without this field all points
-// count as static), and the seconds per scan without reading. With --free-points: how freePoints(), and so
-// DynamicPointsFilter, removes them by a map of all scans, and by a map of the scans before each scan.
+// objects from the same scans, with one thread, at 0.2 and 0.1 m (--cells: at others). OctoMap uses insertPointCloud
+// with rays; points of free cells are removed. Prints SA, DA and AA in percent against the field `label` (without this
+// field all points count as static), and the seconds per scan without reading. With --free-points: how freePoints(),
+// and so DynamicPointsFilter, removes them by a map of all scans, and by a map of the scans before each scan.
 #include <octomap/octomap.h>
 
 #include <CLI/CLI.hpp>
@@ -64,9 +64,27 @@ void print(const char* method, const RemovalScore& score, double seconds, std::s
   std::fflush(stdout);
 }
 
-void clean(const Sequence& sequence, double resolution) {
+/// Which lengths the rules for moving objects have at cells below 0.02 m.
+enum class Lengths {
+  OfTheCells,  // the defaults, which shrink with the cells
+  Fixed        // those of cells of 0.02 m and more
+};
+
+template <typename Options>
+void setLengths(Lengths lengths, VisibilityOptions& visibility, Options& cells, SharedCellOptions& shared) {
+  if (lengths == Lengths::OfTheCells) return;
+  visibility.tolerance = 0.3;
+  visibility.clearance = 0.35;
+  visibility.spacing = 0.03;
+  cells.link = 0.2;
+  cells.reach = 0.5;
+  shared = {0.6, 0.04, 0.01, 0.05};
+}
+
+void clean(const Sequence& sequence, double resolution, Lengths lengths) {
   MovingPointOptions options;
   options.resolution = resolution;
+  setLengths(lengths, options.evidence.visibility, options.cells, options.shared);
   options.evidence.threads = 1;
   const double start = wallSeconds();
   const MovingPoints moving(std::make_shared<const FileScans>(sequence.sources), options);
@@ -77,9 +95,10 @@ void clean(const Sequence& sequence, double resolution) {
         sequence.scans.size());
 }
 
-double online(const Sequence& sequence, double resolution) {
+double online(const Sequence& sequence, double resolution, Lengths lengths) {
   OnlineOptions options;
   options.map = {resolution, 5, 3, 0.0};  // 0.2, 1, 5 m
+  setLengths(lengths, options.visibility, options, options.shared);
   options.threads = 1;
   std::set<CellKey<3>> touched;  // cells from which a cluster was deleted
   OnlineMapper<3> mapper(options, [&](const RemovedCluster<3>& cluster) {
@@ -193,19 +212,26 @@ void addMovingPoints(CLI::App& app) {
   const auto every = std::make_shared<std::size_t>(1);
   command.add_flag("--free-points", *free_points, "freePoints() instead");
   command.add_option("--every", *every, "--free-points: test only every this many scans")->check(CLI::PositiveNumber);
-  command.callback([folders, free_points, every] {
+  const auto cells = std::make_shared<std::vector<double>>(std::vector<double>{0.2, 0.1});
+  command.add_option("--cells", *cells, "sides of the finest cells [m]")->check(CLI::PositiveNumber);
+  const auto fixed = std::make_shared<bool>(false), ours = std::make_shared<bool>(false);
+  command.add_flag("--fixed-lengths", *fixed, "cells below 0.02 m: the lengths of larger cells");
+  command.add_flag("--without-octomap", *ours, "do not run OctoMap");
+  command.callback([folders, free_points, every, cells, fixed, ours] {
+    const Lengths lengths = *fixed ? Lengths::Fixed : Lengths::OfTheCells;
     for (const std::string& folder : *folders) {
       const Sequence sequence(folder);
-      for (const double resolution : {0.2, 0.1}) {
-        std::printf("%s, %zu scans, %.1f m\n", folder.c_str(), sequence.scans.size(), resolution);
+      for (const double resolution : *cells) {
+        std::printf("%s, %zu scans, %g m\n", folder.c_str(), sequence.scans.size(), resolution);
         if (*free_points) {
           freeSpace(sequence, resolution, *every);
           continue;
         }
-        clean(sequence, resolution);
-        const double ours = online(sequence, resolution);
+        clean(sequence, resolution, lengths);
+        const double seconds = online(sequence, resolution, lengths);
+        if (*ours) continue;
         const double theirs = octomapWithRays(sequence, resolution);
-        std::printf("  OctoMap's time / pcd2map --online: %.1f\n", theirs / ours);
+        std::printf("  OctoMap's time / pcd2map --online: %.1f\n", theirs / seconds);
       }
     }
   });

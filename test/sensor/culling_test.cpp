@@ -38,7 +38,7 @@ RangeImage randomImage(const Projection& projection, Random& random) {
   return patches;
 }
 
-TEST(Cullings, NeverHideAPointThatBeamsPassedThrough) {
+TEST(Cullings, NeverHideAPointThatBeamsHitOrPassedThrough) {
   const Projection projections[] = {lidar(16, -25, 15, 90),
                                     lidar(32, -90, 91, 180),  // both poles
                                     lidar(1, -4, 4, 200),
@@ -49,7 +49,7 @@ TEST(Cullings, NeverHideAPointThatBeamsPassedThrough) {
                                     PlanarProjection{6, 6, 4, 4, 9, 9},  // wide: sees almost sideways
                                     PlanarProjection{200, 200, 3, 2, 8, 5}};
   Random random(1);
-  int passed = 0, hidden = 0, hidden_in_view = 0;
+  int passed = 0, at_surface = 0, hidden = 0, hidden_in_view = 0, unseen_in_view = 0;
   for (const Projection& projection : projections)
     for (int scene = 0; scene < 40; ++scene) {
       const RangeImage image = randomImage(projection, random);
@@ -59,12 +59,20 @@ TEST(Cullings, NeverHideAPointThatBeamsPassedThrough) {
         if (ball % 4 == 0) centre = {0.3 * random.normal(), 0.3 * random.normal(), 8.0 * random.uniform() - 4.0};
         if (ball % 4 == 1) centre = {-5.0 * random.uniform(), 0.2 * random.normal(), random.normal()};
         const double radius = ball % 7 == 0 ? 0.0 : std::exp(random.normal() - 1.0);
-        const bool may = culling.mayPassThrough(centre, radius);
+        const bool may = culling.mayPassThrough(centre, radius), may_see = culling.maySee(centre, radius);
+        EXPECT_TRUE(may_see || !may);
         hidden += !may;
         hidden_in_view += !may && pixelOf(projection, centre);
+        unseen_in_view += !may_see && pixelOf(projection, centre);
         for (int i = 0; i < 20; ++i) {
           const Vector3d point = radius > 0.0 ? randomPointOfBall(random, centre, radius) : centre;
-          if (visibilityOf(image, point) != Visibility::PassedThrough) continue;
+          const Visibility seen = visibilityOf(image, point);
+          if (seen == Visibility::AtSurface) {
+            ++at_surface;
+            ASSERT_TRUE(may_see) << "point " << point.transpose() << " of the ball around " << centre.transpose()
+                                 << " of radius " << radius;
+          }
+          if (seen != Visibility::PassedThrough) continue;
           ++passed;
           ASSERT_TRUE(may) << "point " << point.transpose() << " of the ball around " << centre.transpose()
                            << " of radius " << radius;
@@ -72,6 +80,8 @@ TEST(Cullings, NeverHideAPointThatBeamsPassedThrough) {
       }
     }
   EXPECT_GT(passed, 100000);
+  EXPECT_GT(at_surface, 10000);
+  EXPECT_GT(unseen_in_view, 5000);
   EXPECT_GT(hidden, 20000);  // an answer that is always 'may' would pass too
   EXPECT_GT(hidden_in_view, 10000);
 }
@@ -87,7 +97,7 @@ double farthestAround(const RangeImage& image, const PixelBox& box) {
 }
 
 TEST(Cullings, OverlookNoPixelAndSeldomHideLessThanTheyCould) {
-  const double tolerance = VisibilityOptions().tolerance;
+  const double tolerance = 0.3;  // the default
   Random random(2);
   int seen = 0, hidden = 0, too_careful = 0;
   for (const Projection& projection :

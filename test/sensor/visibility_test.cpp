@@ -83,6 +83,7 @@ TEST(VisibilityOf, TestsThePixelsOfACameraThreeCentimetresBesideThePoint) {
   const RangeImage image = imageOf(sees, [](const Vector3d& d) { return (d.x() / d.z() > 0.012 ? 1.0 : 3.0) / d.z(); });
   EXPECT_VISIBILITY(visibilityOf(image, {-0.012, 0, 1.0}), AtSurface);
   EXPECT_VISIBILITY(visibilityOf(image, {-0.06, 0, 1.0}), PassedThrough);
+  EXPECT_VISIBILITY(visibilityOf(image, {-0.012, 0, 1.0}, {0.3, 0.35, std::nullopt, 0.001}), PassedThrough);
 }
 
 TEST(DepthNoiseAt, GrowsWithTheSquareOfTheDepthBeyondItsStart) {

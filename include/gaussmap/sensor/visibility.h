@@ -37,29 +37,39 @@ struct GAUSSMAP_API DepthNoise {
   static DepthNoise camera() { return {0.0012, 0.0019, 0.4}; }
 };
 
-/// Decides when beams pass through a point. The limits are in metres, so they do not depend on the resolution of a map.
+/// Decides when beams pass through a point.
+///
+/// A length that is std::nullopt has a default. Functions that know the cells of a map use this default for finest
+/// cells of 0.02 m and more. For smaller cells it shrinks with their side: at 0.002 m it is a tenth.
 struct VisibilityOptions {
   /// The ranges of all beams around the point must exceed the range of the point by more than this [m], >= 0.
-  double tolerance = 0.3;
+  /// std::nullopt: 0.3 m, or 15 cells if that is less.
+  std::optional<double> tolerance = std::nullopt;
   /// The point must be at least this far from the surface on which the beams end [m], >= 0. This is needed at grazing
-  /// angles: a beam can end metres behind a point, although both lie on the same road.
-  double clearance = 0.35;
+  /// angles: a beam can end metres behind a point, although both lie on the same road. std::nullopt: 0.35 m, or 17.5
+  /// cells if that is less.
+  std::optional<double> clearance = std::nullopt;
   /// Noise of the sensor, which widens both limits: by three standard deviations of the depth at the point, plus three
   /// at the end of the beam. The two are added, because errors of calibration and pose are systematic. std::nullopt:
   /// none for a SphericalProjection, because both limits include the noise of a lidar; DepthNoise::camera() for a
   /// PlanarProjection.
   std::optional<DepthNoise> noise = std::nullopt;
+  /// PlanarProjection only: minimum distance of the pixels around the point, at the depth of the point [m], >= 0. It
+  /// allows for the errors of the poses. std::nullopt: 0.03 m, or 1.5 cells if that is less.
+  std::optional<double> spacing = std::nullopt;
 };
 
 /// Returns the visibility of a point [m, sensor frame] from the 3 x 3 pixels around it (1 x 3 in an image of one row).
 ///
-/// For a camera, these pixels are at least 3 cm apart at the depth of the point, because poses are not exact.
-/// At least half of these pixels must have returns. A single pixel is not enough at thin objects and edges: its beam
-/// can pass beside them, and they would seem to be free.
+/// For a camera, these pixels are at least VisibilityOptions::spacing apart at the depth of the point, because poses
+/// are not exact. At least half of these pixels must have returns. A single pixel is not enough at thin objects and
+/// edges: its beam can pass beside them, and they would seem to be free.
 GAUSSMAP_API Visibility visibilityOf(const RangeImage& image, const Eigen::Vector3d& point,
                                      const VisibilityOptions& options = {});
 
-/// The observations of one cell or cluster by all scans. They explain why it was kept or deleted.
+/// The observations of one cell or cluster by all scans. They explain why it was kept or deleted. With
+/// HitRule::RangeImage of OnlineMapper, `hits` are the scans that raised its log-odds and `misses` those that lowered
+/// them.
 struct Evidence {
   std::uint32_t hits = 0;       ///< number of scans that measured a point in the cell
   std::uint32_t misses = 0;     ///< number of scans whose beams passed through the cell

@@ -12,6 +12,7 @@
 #include "gaussmap/map/queries.h"
 #include "gaussmap/mapping/moving/moving_points.h"
 #include "gaussmap/sensor/range_image.h"
+#include "mapping/moving/default_lengths.h"
 
 namespace gaussmap {
 using namespace detail;
@@ -52,16 +53,15 @@ void addMeans(const GaussianMap<3>& map, std::size_t cell, int scale, const Eige
     if (map.logOdds(i, scale) >= threshold) image.add(map.gaussian(i, scale).mean - sensor);
 }
 
-/// Frees the unknown points that are connected to free points. Points are connected if their cubes of side kLink are
-/// adjacent, over at most kSteps cubes.
-void growFreePoints(const std::vector<Eigen::Vector3d>& points, std::vector<PointState>& states) {
-  constexpr double kLink = 0.2;  // [m], as MovingCellOptions::link
+/// Frees the unknown points that are connected to free points. Points are connected if their cubes of side `link` [m]
+/// are adjacent, over at most kSteps cubes.
+void growFreePoints(const std::vector<Eigen::Vector3d>& points, double link, std::vector<PointState>& states) {
   constexpr int kSteps = 4;
   using Cube = std::array<double, 3>;  // whole numbers; a double holds those of any point
   std::vector<std::pair<Cube, std::size_t>> cubes;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (states[i] == PointState::Occupied) continue;
-    const Eigen::Vector3d cube = (points[i] / kLink).array().floor();
+    const Eigen::Vector3d cube = (points[i] / link).array().floor();
     cubes.push_back({{cube.x(), cube.y(), cube.z()}, i});
   }
   std::sort(cubes.begin(), cubes.end());
@@ -104,12 +104,13 @@ void freeUnknownPoints(const GaussianMap<3>& map, const std::vector<Eigen::Vecto
   const int top = map.scales() - 1;
   for (std::size_t cell = 0; cell < map.cellCount(top); ++cell)
     addMeans(map, cell, top, sensor, farthest + kBehind, options.threshold, image);
+  const double side = map.grid().side(0);
+  const VisibilityOptions visibility = forCells(options.visibility, side);
   parallelFor(points.size(), options.threads, 1024, [&](std::size_t i) {
     if (states[i] != PointState::Unknown) return;
-    if (visibilityOf(image, points[i] - sensor, options.visibility) == Visibility::PassedThrough)
-      states[i] = PointState::Free;
+    if (visibilityOf(image, points[i] - sensor, visibility) == Visibility::PassedThrough) states[i] = PointState::Free;
   });
-  growFreePoints(points, states);
+  growFreePoints(points, *forCells(MovingCellOptions(), side).link, states);
 }
 
 }  // namespace

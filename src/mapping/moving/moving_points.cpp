@@ -14,6 +14,7 @@
 #include "gaussmap/core/scans.h"
 #include "gaussmap/mapping/build.h"
 #include "mapping/moving/check_options.h"
+#include "mapping/moving/default_lengths.h"
 #include "mapping/moving/moving_cells.h"
 #include "mapping/moving/scan_evidence.h"
 #include "mapping/moving/shared_cells.h"
@@ -88,6 +89,7 @@ MovingPoints::MovingPoints(std::shared_ptr<const Scans> scans, const MovingPoint
   checkOptions(options.shared, options.resolution);
   state.scans = std::move(scans);
   state.options = options;
+  state.options.shared = forCells(options.shared, options.resolution);
   state.limits = limitsOf(options.evidence);
   const ScanEvidenceOptions& input = options.evidence;
   const auto report = [&](MovingPointStep step) -> std::function<void(std::size_t)> {

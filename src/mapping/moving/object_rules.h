@@ -90,7 +90,7 @@ void noteSharedCells(const Cells& cells, const CellKey<Cells::kDimensions>& key,
 
 /// Returns the surface in a cell, about the centre of the cell. It is fitted to the points in the cell and in the rings
 /// of cells around it. Rings within `options.reach` [m] are added until the points form a flat surface. Returns
-/// std::nullopt if they never do.
+/// std::nullopt if they never do. All lengths of the options are set.
 /// `still(cell)` returns the moments of the points that were measured while the object was elsewhere.
 template <typename Cells, typename Still>
 std::optional<Surface<Cells::kDimensions>> surfaceAt(const Cells& cells, typename Cells::Index cell, const Still& still,
@@ -104,10 +104,10 @@ std::optional<Surface<Cells::kDimensions>> surfaceAt(const Cells& cells, typenam
   };
   add(cell);
   std::optional<Surface<D>> surface;
-  const std::int32_t reach = cellsFor(options.reach, side);
+  const std::int32_t reach = cellsFor(*options.reach, side);
   for (std::int32_t ring = 1; ring <= reach && !surface; ++ring) {
     forNearCells(cells, key, ring, ring, add);
-    surface = sums.surface(options.flatness);
+    surface = sums.surface(*options.flatness, *options.extent);
   }
   return surface;
 }

@@ -11,6 +11,7 @@
 #include "mapping/moving/check_options.h"
 #include "mapping/moving/map_cells.h"
 #include "sensor/culling.h"
+#include "sensor/default_lengths.h"
 
 namespace gaussmap::detail {
 namespace {
@@ -66,8 +67,11 @@ std::vector<Eigen::Vector3d> finestMeans(const GaussianMap<3>& map) {
 
 void checkOptions(const ScanEvidenceOptions& options) {
   checkLimits(limitsOf(options));
-  require(options.visibility.tolerance >= 0.0, "tolerance", options.visibility.tolerance, "must not be negative");
-  require(options.visibility.clearance >= 0.0, "clearance", options.visibility.clearance, "must not be negative");
+  const double tolerance = toleranceOf(options.visibility), clearance = clearanceOf(options.visibility);
+  const double spacing = spacingOf(options.visibility);
+  require(tolerance >= 0.0, "tolerance", tolerance, "must not be negative");
+  require(clearance >= 0.0, "clearance", clearance, "must not be negative");
+  require(spacing >= 0.0, "spacing", spacing, "must not be negative");
   if (options.visibility.noise) {
     const DepthNoise& noise = *options.visibility.noise;
     require(noise.constant >= 0.0, "noise.constant", noise.constant, "must not be negative");
@@ -82,9 +86,11 @@ void checkOptions(const ScanEvidenceOptions& options) {
   }
 }
 
-ScanEvidence gatherEvidence(const GaussianMap<3>& map, const Scans& scans, const ScanEvidenceOptions& options,
+ScanEvidence gatherEvidence(const GaussianMap<3>& map, const Scans& scans, const ScanEvidenceOptions& given,
                             const std::function<void(std::size_t)>& progress) {
-  checkOptions(options);
+  checkOptions(given);
+  ScanEvidenceOptions options = given;
+  options.visibility = forCells(given.visibility, map.grid().side(0));
   constexpr std::size_t kBatch = 16;  // scans in memory at a time
   const std::vector<Eigen::Vector3d> means = finestMeans(map);
   ScanEvidence evidence;

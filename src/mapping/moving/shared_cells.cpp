@@ -6,15 +6,18 @@
 #include "core/check.h"
 #include "core/parallel.h"
 #include "mapping/moving/check_options.h"
+#include "mapping/moving/default_lengths.h"
 #include "mapping/moving/map_cells.h"
 #include "mapping/moving/object_rules.h"
 
 namespace gaussmap::detail {
 void checkOptions(const SharedCellOptions& options, double resolution) {
-  require(options.reach >= 0.0 && options.reach <= kMaxCells * resolution, "reach of a surface", options.reach,
+  const SharedCellOptions lengths = forCells(options, resolution);
+  require(*lengths.reach >= 0.0 && *lengths.reach <= kMaxCells * resolution, "reach of a surface", *lengths.reach,
           "must be 0 to 1000 cells");
-  require(options.flatness >= 0.0, "flatness", options.flatness, "must not be negative");
-  require(options.noise >= 0.0, "noise", options.noise, "must not be negative");
+  require(*lengths.flatness >= 0.0, "flatness", *lengths.flatness, "must not be negative");
+  require(*lengths.noise >= 0.0, "noise", *lengths.noise, "must not be negative");
+  require(*lengths.extent >= 0.0, "extent", *lengths.extent, "must not be negative");
 }
 
 SharedCells findSharedCells(const GaussianMap<3>& map, const std::vector<bool>& moving,
@@ -27,8 +30,9 @@ SharedCells findSharedCells(const GaussianMap<3>& map, const std::vector<bool>& 
   return shared;
 }
 
-void fitSurfaces(const GaussianMap<3>& map, const MomentGrid<3>& still, const SharedCellOptions& options, int threads,
+void fitSurfaces(const GaussianMap<3>& map, const MomentGrid<3>& still, const SharedCellOptions& given, int threads,
                  SharedCells& shared) {
+  const SharedCellOptions options = forCells(given, map.grid().side(0));
   std::unordered_map<std::size_t, CellMoments<3>> between;  // moments of the points in shared cells without the object
   for (std::size_t i = 0; i < still.size(); ++i)
     if (const auto cell = map.find(still[i].key, 0)) between.emplace(*cell, still[i].moments);

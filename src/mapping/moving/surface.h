@@ -19,8 +19,9 @@ struct Surface {
   Vector<D> normal;  ///< unit length
   double deviation;  ///< standard deviation of the points along the normal [m]
 
-  /// Returns the maximum distance from the surface at which a point still belongs to it [m].
-  double thickness(const SharedCellOptions& options) const { return std::max(options.noise, 3.0 * deviation); }
+  /// Returns the maximum distance from the surface at which a point still belongs to it [m]. All lengths of the options
+  /// are set.
+  double thickness(const SharedCellOptions& options) const { return std::max(*options.noise, 3.0 * deviation); }
 };
 
 /// Adds up the points of some cells, about one reference point, and fits a surface to them.
@@ -39,17 +40,17 @@ class SurfaceSums {
   }
 
   /// Returns the surface on which the points lie, or std::nullopt if they are too few or not flat. Flat means that
-  /// their standard deviation along the normal is at most `flatness` [m].
-  std::optional<Surface<D>> surface(double flatness) const {
+  /// their standard deviation along the normal is at most `flatness` [m]. Along the second axis it is at least `extent`
+  /// [m].
+  std::optional<Surface<D>> surface(double flatness, double extent) const {
     constexpr double kMinPoints = 10.0;  // minimum number of points of a surface
-    constexpr double kExtent = 0.05;     // minimum standard deviation along the second axis [m]
     if (n_ < kMinPoints) return std::nullopt;
     const Vector<D> mean = sum_ / n_;
     const Eigen::Matrix<double, D, D> spread = product_ / n_ - mean * mean.transpose();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, D, D>> axes(spread);
     const double across = std::sqrt(std::max(0.0, axes.eigenvalues()[0]));
     const double along = std::sqrt(std::max(0.0, axes.eigenvalues()[1]));
-    if (across > flatness || along < kExtent) return std::nullopt;
+    if (across > flatness || along < extent) return std::nullopt;
     return Surface<D>{mean, axes.eigenvectors().col(0), across};
   }
 

@@ -11,13 +11,14 @@
 namespace gaussmap::detail {
 namespace {
 
-/// Input and result of a test: whether the beams of a range image passed through a cluster.
+/// Input and result of a test of a cluster against a range image.
 struct BeamTest {
   std::uint32_t cell;
   std::uint32_t cluster;
   int scale;
-  Eigen::Vector3d mean;  // [m, map frame], copied here while the cell is in the CPU cache
-  float passed = 0.0f;   // result: fraction of the samples that beams passed through
+  Eigen::Vector3d mean;     // [m, map frame], copied here while the cell is in the CPU cache
+  float passed = 0.0f;      // result: fraction of the samples that beams passed through
+  float at_surface = 0.0f;  // result: fraction of the samples at the surface that the beams hit
 };
 
 /// Gives visitVisible() access to the cells. Adds the coarse cells whose children are visited to `seen`.
@@ -61,21 +62,6 @@ struct VisibleCells {
   }
 };
 
-/// Returns B, Yguel 2009 eq. (1): the number of pixels that the ball around a cell can cover, at most kMax.
-int samplesFor(const Projection& projection, double range, double side) {
-  constexpr double kMax = 100.0;
-  double pixel = 0.0;  // area of a pixel on the unit sphere (lidar) or on the plane z = 1 (camera)
-  if (const auto* lidar = std::get_if<SphericalProjection>(&projection)) {
-    const double rows = double(lidar->row_borders.size()) - 1.0;
-    pixel = (lidar->row_borders.back() - lidar->row_borders.front()) / rows * 2.0 * kPi / lidar->columns;
-  } else {
-    const auto& camera = std::get<PlanarProjection>(projection);
-    pixel = 1.0 / (camera.fx * camera.fy);
-  }
-  const double count = 3.0 * kPi / (4.0 * pixel) * std::pow(side / range, 2);
-  return static_cast<int>(std::clamp(std::ceil(count), 1.0, kMax));
-}
-
 template <int D>
 BeamTest beamTest(const OnlineCells<D>& cells, std::uint32_t i, std::uint32_t cluster, int scale, const Pose& sensor) {
   const OnlineCell<D>& cell = cells.cell(i, scale);
@@ -83,40 +69,53 @@ BeamTest beamTest(const OnlineCells<D>& cells, std::uint32_t i, std::uint32_t cl
           inSpace(Vector<D>(cells.grid().centre(cell.key, scale) + cell.clusters[cluster].gaussian.mean), sensor)};
 }
 
-bool passes(const Eigen::Vector3d& point, const SensorView& view, const OnlineOptions& options) {
-  return visibilityOf(view.image, view.toSensor(point), options.visibility) == Visibility::PassedThrough;
+Visibility lookAt(const Eigen::Vector3d& point, const SensorView& view, const OnlineOptions& options) {
+  return visibilityOf(view.image, view.toSensor(point), options.visibility);
 }
 
-/// Draws samples of a cluster. Returns the fraction of the samples inside its cell that the beams of a view passed
-/// through. If no sample is inside, tests the mean instead.
+/// Tests the mean of a cluster.
+void testMean(BeamTest& test, const SensorView& view, const OnlineOptions& options) {
+  const Visibility seen = lookAt(test.mean, view, options);
+  test.passed = seen == Visibility::PassedThrough ? 1.0f : 0.0f;
+  test.at_surface = seen == Visibility::AtSurface ? 1.0f : 0.0f;
+}
+
+/// Tests random samples of a cluster. Rejects samples outside its cell. If none is left, tests the mean instead.
 template <int D>
-double shareOfSamples(const OnlineCells<D>& cells, const BeamTest& test, const SensorView& view,
-                      const OnlineOptions& options) {
+void testSamples(const OnlineCells<D>& cells, BeamTest& test, const SensorView& view, const OnlineOptions& options) {
   const OnlineCell<D>& cell = cells.cell(test.cell, test.scale);
   const Gaussian<D>& gaussian = cell.clusters[test.cluster].gaussian;
   const Vector<D> centre = cells.grid().centre(cell.key, test.scale);
   const double side = cells.grid().side(test.scale);
-  const int wanted = samplesFor(view.image.projection(), view.toSensor(test.mean).norm(), side);
+  const Eigen::Vector3d place = options.sample_range == SampleRange::Mean ? test.mean : inSpace(centre, view.pose);
+  const double most = options.max_samples > 0 ? options.max_samples : double(view.image.rows()) * view.image.columns();
+  const int wanted = samplesFor(view.image.projection(), view.toSensor(place).norm(), side, most);
   Random random = Random::forPart(0, (std::uint64_t{KeyIndex::hashOf(cell.key)} << 16) + test.cluster);
   const GaussianSampler<D> sampler(gaussian);
-  int inside = 0, passed = 0;
+  int inside = 0, passed = 0, at_surface = 0;
   for (int i = 0; i < wanted; ++i) {
     const Vector<D> point = sampler(random);
     if (point.cwiseAbs().maxCoeff() > 0.5 * side) continue;
     ++inside;
-    passed += passes(inSpace(Vector<D>(centre + point), view.pose), view, options);
+    const Visibility seen = lookAt(inSpace(Vector<D>(centre + point), view.pose), view, options);
+    passed += seen == Visibility::PassedThrough;
+    at_surface += seen == Visibility::AtSurface;
   }
-  return inside > 0 ? double(passed) / inside : double(passes(test.mean, view, options));
+  if (inside == 0) return testMean(test, view, options);
+  test.passed = static_cast<float>(double(passed) / inside);
+  test.at_surface = static_cast<float>(double(at_surface) / inside);
 }
 
 template <int D>
 void runTests(const OnlineCells<D>& cells, std::vector<BeamTest>& tests, const SensorView& view,
               const OnlineOptions& options) {
   const bool mean_only = options.samples == OccupancySamples::Mean;
-  parallelFor(tests.size(), options.threads, 1024, [&](std::size_t i) {
-    BeamTest& test = tests[i];
-    test.passed = static_cast<float>(mean_only ? double(passes(test.mean, view, options))
-                                               : shareOfSamples(cells, test, view, options));
+  // A coarse cell close to the sensor can have thousands of samples, so the parts are small.
+  parallelFor(tests.size(), options.threads, mean_only ? 1024 : 16, [&](std::size_t i) {
+    if (mean_only)
+      testMean(tests[i], view, options);
+    else
+      testSamples(cells, tests[i], view, options);
   });
 }
 
@@ -130,7 +129,37 @@ void countPassed(OnlineCells<D>& cells, const std::vector<BeamTest>& tests, cons
   }
 }
 
+/// HitRule::RangeImage: changes each cluster by the mean over its samples. A scan that raises the log-odds counts as a
+/// hit, a scan that lowers them as a miss.
+template <int D>
+void countChanges(OnlineCells<D>& cells, const std::vector<BeamTest>& tests, const OnlineOptions& options,
+                  OnlineScan<D>& scan) {
+  const double most = options.occupancy.max_log_odds;
+  for (const BeamTest& test : tests) {
+    OnlineCluster<D>& cluster = cells.cell(test.cell, test.scale).clusters[test.cluster];
+    const double change =
+        double(test.at_surface) * options.occupancy.hit - double(test.passed) * options.occupancy.miss;
+    if (change > 0.0) cluster.evidence.hit(scan.number);
+    if (change < 0.0) cluster.evidence.miss();
+    if (change < 0.0 && test.scale == 0) scan.missed.push_back(test.cell);
+    cluster.log_odds = static_cast<float>(std::clamp(double(cluster.log_odds) + change, -most, most));
+  }
+}
+
 }  // namespace
+
+int samplesFor(const Projection& projection, double range, double side, double most) {
+  double pixel = 0.0;  // area of a pixel on the unit sphere (lidar) or on the plane z = 1 (camera)
+  if (const auto* lidar = std::get_if<SphericalProjection>(&projection)) {
+    const double rows = double(lidar->row_borders.size()) - 1.0;
+    pixel = (lidar->row_borders.back() - lidar->row_borders.front()) / rows * 2.0 * kPi / lidar->columns;
+  } else {
+    const auto& camera = std::get<PlanarProjection>(projection);
+    pixel = 1.0 / (camera.fx * camera.fy);
+  }
+  const double count = 3.0 * kPi / (4.0 * pixel) * std::pow(side / range, 2);
+  return static_cast<int>(std::clamp(std::ceil(count), 1.0, most));
+}
 
 template <int D>
 void countHits(OnlineCells<D>& cells, const OnlineScan<D>& scan, const std::vector<std::uint32_t>& touched,
@@ -160,38 +189,45 @@ void lookBack(OnlineCells<D>& cells, OnlineScan<D>& scan, const std::deque<Senso
 }
 
 template <int D>
-void countMisses(OnlineCells<D>& cells, OnlineScan<D>& scan, const SensorView& view, const OnlineOptions& options,
+void testVisible(OnlineCells<D>& cells, OnlineScan<D>& scan, const SensorView& view, const OnlineOptions& options,
                  OnlineStatistics& statistics) {
   std::vector<std::vector<std::uint32_t>> seen(static_cast<std::size_t>(cells.scales()));
   const Culling culling(view.image, options.visibility);
   const VisibleCells<D> visible(cells, view.pose, options.max_ranges, seen);
-  const auto unhit = [&](const OnlineCluster<D>& cluster) {
-    return cluster.evidence.hits == 0 || cluster.evidence.last_hit != scan.number;
+  const bool by_image = options.hit_rule == HitRule::RangeImage;
+  const auto isTested = [&](const OnlineCluster<D>& cluster) {
+    return by_image || cluster.evidence.hits == 0 || cluster.evidence.last_hit != scan.number;
   };
   std::vector<BeamTest> tests;
-  const VisitCounts counts = visitVisible(visible, culling, view.pose, [&](std::size_t cell) {
+  const auto may = [&](const Eigen::Vector3d& centre, double radius) {
+    return by_image ? culling.maySee(centre, radius) : culling.mayPassThrough(centre, radius);
+  };
+  const VisitCounts counts = visitCells(visible, view.pose, may, [&](std::size_t cell) {
     const std::uint32_t i = visible.indexOf(cell, 0);
-    if (unhit(cells.cell(i, 0).clusters[0])) tests.push_back(beamTest(cells, i, 0, 0, view.pose));
+    if (isTested(cells.cell(i, 0).clusters[0])) tests.push_back(beamTest(cells, i, 0, 0, view.pose));
   });
   statistics.cells_tested = counts.tested;
   statistics.cells_visited = counts.visited;
   for (int scale = 1; scale < cells.scales(); ++scale)
     for (const std::uint32_t i : seen[static_cast<std::size_t>(scale)]) {
       OnlineClusters<D>& clusters = cells.cell(i, scale).clusters;
-      if (std::none_of(clusters.begin(), clusters.end(), unhit)) continue;
+      if (std::none_of(clusters.begin(), clusters.end(), isTested)) continue;
       if (options.learning_rate == LearningRate::SampleMean) cells.refresh(i, scale);
       for (std::uint32_t c = 0; c < clusters.size(); ++c)
-        if (unhit(clusters[c])) tests.push_back(beamTest(cells, i, c, scale, view.pose));
+        if (isTested(clusters[c])) tests.push_back(beamTest(cells, i, c, scale, view.pose));
     }
   runTests(cells, tests, view, options);
-  countPassed(cells, tests, options, scan);
+  if (by_image)
+    countChanges(cells, tests, options, scan);
+  else
+    countPassed(cells, tests, options, scan);
 }
 
 #define GAUSSMAP_INSTANTIATE(D)                                                                                    \
   template void countHits<D>(OnlineCells<D>&, const OnlineScan<D>&, const std::vector<std::uint32_t>&,             \
                              const OnlineOptions&);                                                                \
   template void lookBack<D>(OnlineCells<D>&, OnlineScan<D>&, const std::deque<SensorView>&, const OnlineOptions&); \
-  template void countMisses<D>(OnlineCells<D>&, OnlineScan<D>&, const SensorView&, const OnlineOptions&,           \
+  template void testVisible<D>(OnlineCells<D>&, OnlineScan<D>&, const SensorView&, const OnlineOptions&,           \
                                OnlineStatistics&);
 GAUSSMAP_INSTANTIATE(2)
 GAUSSMAP_INSTANTIATE(3)

@@ -9,16 +9,16 @@
 namespace gaussmap::detail {
 namespace {
 
-/// Returns the missed finest cells with log-odds below 0, and the other cells of the same objects.
+/// Returns the missed finest cells with log-odds below the limit, and the other cells of the same objects.
 template <int D>
 std::vector<std::uint32_t> cellsToForget(const OnlineCells<D>& cells, const OnlineScan<D>& scan,
                                          const OnlineOptions& options) {
   std::vector<std::uint32_t> freed;
   for (const std::uint32_t i : scan.missed)
-    if (cells.cell(i, 0).clusters[0].log_odds < 0.0f) freed.push_back(i);
+    if (cells.cell(i, 0).clusters[0].log_odds < static_cast<float>(options.forget_below)) freed.push_back(i);
   std::sort(freed.begin(), freed.end());
   freed.erase(std::unique(freed.begin(), freed.end()), freed.end());
-  return cellsOfObjects(FinestOnlineCells<D>{cells}, std::move(freed), options.link, options.reach);
+  return cellsOfObjects(FinestOnlineCells<D>{cells}, std::move(freed), *options.link, *options.reach);
 }
 
 /// Fits the clusters of a coarse cell to the finer clusters that remain, by k-means from the current clusters. Used for

@@ -41,12 +41,6 @@ class NearestCluster {
   std::vector<std::optional<SmallCholesky<D>>> factors_;
 };
 
-/// Returns the learning rate eps(o), Yguel 2009 eq. (5).
-double rateOf(double log_odds, const OnlineOptions& options) {
-  const double most = options.occupancy.max_log_odds;
-  return (options.slowest_rate - options.fastest_rate) / (2.0 * most) * (log_odds + most) + options.fastest_rate;
-}
-
 /// Moves a cluster towards a point, Yguel 2009 Algorithm 1. Every point also adds the variance of the noise floor, so
 /// the part of the noise in the covariance stays constant.
 template <int D>

@@ -12,6 +12,7 @@
 #include "core/check.h"
 #include "map/map_scale_builder.h"
 #include "mapping/moving/check_options.h"
+#include "mapping/moving/default_lengths.h"
 #include "mapping/online/online_state.h"
 
 namespace gaussmap {
@@ -25,6 +26,9 @@ void checkOptions(const OnlineOptions& options) {
   require(options.fastest_rate >= options.slowest_rate && options.fastest_rate <= 1.0, "fastest_rate",
           options.fastest_rate, "must be at least slowest_rate and at most 1");
   require(options.occupancy.max_log_odds > 0.0, "max_log_odds", options.occupancy.max_log_odds, "must be positive");
+  require(options.max_samples >= 0, "max_samples", options.max_samples, "must not be negative");
+  require(std::abs(options.forget_below) <= options.occupancy.max_log_odds, "forget_below", options.forget_below,
+          "must be between -max_log_odds and max_log_odds");
   require(options.occupancy_every >= 1, "occupancy_every", options.occupancy_every, "must be at least 1");
   require(options.look_back >= 0, "look_back", options.look_back, "must not be negative");
   require(options.refine_every >= 0, "refine_every", options.refine_every, "must not be negative");
@@ -41,6 +45,20 @@ void checkOptions(const OnlineOptions& options) {
   views.projection = options.projection;
   views.no_return_is_free = options.no_return_is_free;
   detail::checkOptions(views);
+}
+
+/// Returns the options with all lengths set.
+OnlineOptions withLengths(OnlineOptions options) {
+  const double side = options.map.resolution;
+  options.visibility = forCells(options.visibility, side);
+  options.shared = forCells(options.shared, side);
+  MovingCellOptions objects;
+  objects.link = options.link;
+  objects.reach = options.reach;
+  objects = forCells(objects, side);
+  options.link = objects.link;
+  options.reach = objects.reach;
+  return options;
 }
 
 /// Measures the seconds since the last call of lap().
@@ -80,7 +98,10 @@ OnlineOptions OnlineOptions::yguel2009(int dimensions) {
   options.slowest_rate = 5e-4;
   options.fastest_rate = 5e-2;
   options.occupancy.max_log_odds = 10.0;
+  options.hit_rule = HitRule::RangeImage;
   options.samples = OccupancySamples::Random;
+  options.sample_range = SampleRange::CellCentre;
+  options.max_samples = 0;
   options.occupancy_every = dimensions == 2 ? 1 : 3;
   options.look_back = 0;  // new cells are not tested against earlier scans
   options.reach = 0.0;    // objects do not grow beyond the deleted cells
@@ -88,14 +109,16 @@ OnlineOptions OnlineOptions::yguel2009(int dimensions) {
   options.refine_cells = 4;
   options.method = RefineMethod::Insert;
   options.seed_rule = ClusterSeed::InputGaussian;
+  options.refine_area = RefineArea::Visible;
+  options.error_factor = ErrorFactor::OneMinusRate;
   return options;
 }
 
 template <int D>
 struct OnlineMapper<D>::State {
   State(const OnlineOptions& given, Removed told)
-      : options(given), cells(Grid<D>(given.map)), removed(std::move(told)) {
-    checkOptions(given);
+      : options(withLengths(given)), cells(Grid<D>(given.map)), removed(std::move(told)) {
+    checkOptions(options);
     options.map = cells.grid().options();
   }
 
@@ -173,7 +196,8 @@ OnlineStatistics OnlineMapper<D>::add(Scan scan) {
   statistics.update_time = watch.lap();
 
   const bool look_around = now.number % static_cast<std::uint32_t>(options.occupancy_every) == 0;
-  countHits(state.cells, now, look_around ? now.touched : now.new_cells, options);
+  if (options.hit_rule == HitRule::Points)
+    countHits(state.cells, now, look_around ? now.touched : now.new_cells, options);
   std::optional<RangeImage> image;
   if (look_around || options.look_back > 0) {
     const Scan& shown = differs ? beams : scan;
@@ -186,7 +210,7 @@ OnlineStatistics OnlineMapper<D>::add(Scan scan) {
     statistics.image_time = watch.lap();
     lookBack(state.cells, now, state.views, options);
     statistics.look_back_time = watch.lap();
-    if (look_around) countMisses(state.cells, now, view, options, statistics);
+    if (look_around) testVisible(state.cells, now, view, options, statistics);
     statistics.occupancy_time = watch.lap();
     state.views.push_back(std::move(view));
     while (state.views.size() > static_cast<std::size_t>(options.look_back)) state.views.pop_front();

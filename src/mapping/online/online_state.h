@@ -80,19 +80,26 @@ template <int D>
 void lookBack(OnlineCells<D>& cells, OnlineScan<D>& scan, const std::deque<SensorView>& views,
               const OnlineOptions& options);
 
-/// Counts a hit for the clusters of the finest cells `touched` and for all their ancestors, once per cluster.
+/// Returns B, Yguel 2009 eq. (1): the number of pixels that the ball around a cell can cover, at least 1, at most
+/// `most`. `range` = distance of the cell from the sensor [m], `side` = side of the cell [m]. The paper measures pixels
+/// on the plane of the image; for a lidar, this is the unit sphere.
+int samplesFor(const Projection& projection, double range, double side, double most);
+
+/// HitRule::Points: counts a hit for the clusters of the finest cells `touched` and for all their ancestors, once per
+/// cluster.
 template <int D>
 void countHits(OnlineCells<D>& cells, const OnlineScan<D>& scan, const std::vector<std::uint32_t>& touched,
                const OnlineOptions& options);
 
-/// Counts a miss for every cluster that the scan did not hit and that its beams passed through, Yguel 2009, sec. 4.1
-/// and 4.2.
+/// Tests the visible clusters against the range image of the scan, Yguel 2009, sec. 4.1 and 4.2. HitRule::Points:
+/// counts a miss for every cluster that the scan did not hit and that its beams passed through. HitRule::RangeImage:
+/// raises and lowers the log-odds of all of them, and counts hits and misses.
 template <int D>
-void countMisses(OnlineCells<D>& cells, OnlineScan<D>& scan, const SensorView& view, const OnlineOptions& options,
+void testVisible(OnlineCells<D>& cells, OnlineScan<D>& scan, const SensorView& view, const OnlineOptions& options,
                  OnlineStatistics& statistics);
 
-/// Deletes the finest clusters with log-odds below 0 and the other cells of their objects, Yguel 2009, sec. 5.3. Also
-/// deletes coarser clusters without children. Returns the deleted finest cells.
+/// Deletes the finest clusters with log-odds below the limit and the other cells of their objects, Yguel 2009,
+/// sec. 5.3. Also deletes coarser clusters without children. Returns the deleted finest cells.
 template <int D>
 std::vector<GoneCell<D>> forget(OnlineCells<D>& cells, const OnlineScan<D>& scan, const OnlineOptions& options,
                                 const typename OnlineMapper<D>::Removed& removed, OnlineStatistics& statistics);
@@ -105,8 +112,8 @@ void splitSharedCells(OnlineCells<D>& cells, const OnlineScan<D>& scan, const st
                       std::deque<ScanSums<D>>& recent, const OnlineOptions& options,
                       const typename OnlineMapper<D>::Removed& removed, OnlineStatistics& statistics);
 
-/// Measures the need for clusters of the coarse cells with points of the scan. Then adds clusters to the cells of the
-/// whole map with the largest known need, Yguel 2009, sec. 5.1 (the paper: to visible cells only).
+/// Measures the need for clusters of the coarse cells with points of the scan. Then adds clusters to the cells with the
+/// largest known need, Yguel 2009, sec. 5.1: to those of the whole map or of the scan, see RefineArea.
 template <int D>
 void refineVisible(OnlineCells<D>& cells, const OnlineScan<D>& scan, const OnlineOptions& options,
                    OnlineStatistics& statistics);
@@ -117,6 +124,12 @@ void refineVisible(OnlineCells<D>& cells, const OnlineScan<D>& scan, const Onlin
 template <int D>
 void recluster(OnlineCells<D>& cells, std::uint32_t i, int scale, const std::vector<Gaussian<D>>& centres,
                const std::vector<int>& labels);
+
+/// Returns the learning rate eps(o), Yguel 2009 eq. (5).
+inline double rateOf(double log_odds, const OnlineOptions& options) {
+  const double most = options.occupancy.max_log_odds;
+  return (options.slowest_rate - options.fastest_rate) / (2.0 * most) * (log_odds + most) + options.fastest_rate;
+}
 
 /// Counts a hit of a cluster by a scan, at most once per scan, and raises its log-odds.
 template <int D>

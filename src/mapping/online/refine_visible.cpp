@@ -40,6 +40,17 @@ bool isOccupied(OnlineCells<D>& cells, std::uint32_t i, int scale) {
   return sum > 0.5 * count;
 }
 
+/// Returns the factors of the finer clusters under the cell in eq. (6), or an empty vector if all are 1.
+template <int D>
+std::vector<double> errorFactors(OnlineCells<D>& cells, std::uint32_t i, int scale, const OnlineOptions& options) {
+  std::vector<double> factors;
+  if (options.error_factor == ErrorFactor::One || options.learning_rate == LearningRate::SampleMean) return factors;
+  cells.forClustersUnder(i, scale, [&](const OnlineCluster<D>& finer) {
+    factors.push_back(1.0 - rateOf(double(finer.log_odds), options));
+  });
+  return factors;
+}
+
 template <int D>
 Dendrogram dendrogramOf(OnlineCells<D>& cells, std::uint32_t i, int scale, std::vector<Gaussian<D>> data) {
   std::vector<double> areas;
@@ -77,7 +88,7 @@ std::vector<Touched> lookAtTouched(OnlineCells<D>& cells, const OnlineScan<D>& s
     all[n].cell = touched[n];
     OnlineCell<D>& cell = cells.cell(touched[n], scale);
     const std::vector<Gaussian<D>> data = cells.dataUnder(touched[n], scale);
-    all[n].error = cellError(centresOf(cell), data);
+    all[n].error = cellError(centresOf(cell), data, errorFactors(cells, touched[n], scale, options));
     cell.need = cell.spare = 0.0;
     if (data.size() < 2 || !isOccupied(cells, touched[n], scale)) return;
     if (options.method == RefineMethod::Insert) {
@@ -112,6 +123,18 @@ std::priority_queue<Entry> queueOf(const OnlineCells<D>& cells, int scale, doubl
   for (std::uint32_t i = 0; i < cells.slots(scale); ++i)
     if (cells.cell(i, scale).alive && cells.cell(i, scale).*value > 0.0)
       entries.emplace_back(sign * (cells.cell(i, scale).*value), -std::int64_t{i});
+  return std::priority_queue<Entry>(std::less<Entry>(), std::move(entries));
+}
+
+/// Returns the cells that can get clusters and have a positive need; the largest is on top.
+template <int D>
+std::priority_queue<Entry> needyCells(const OnlineCells<D>& cells, int scale, const std::vector<Touched>& touched,
+                                      const OnlineOptions& options) {
+  if (options.refine_area == RefineArea::Known) return queueOf(cells, scale, &OnlineCell<D>::need, 1.0);
+  std::vector<Entry> entries;
+  for (const Touched& one : touched)
+    if (const double need = cells.cell(one.cell, scale).need; need > 0.0)
+      entries.emplace_back(need, -std::int64_t{one.cell});
   return std::priority_queue<Entry>(std::less<Entry>(), std::move(entries));
 }
 
@@ -184,7 +207,7 @@ void refineVisible(OnlineCells<D>& cells, const OnlineScan<D>& scan, const Onlin
         setParts(cells, touched.cell, scale, touched.dendrogram, parts);
     }
 
-    std::priority_queue<Entry> needy = queueOf(cells, scale, &OnlineCell<D>::need, 1.0), rich;
+    std::priority_queue<Entry> needy = needyCells(cells, scale, all, options), rich;
     const double most = std::floor(options.budget * double(cells.size(scale)));
     if (options.method == RefineMethod::Agglomerate && double(cells.clusterCount(scale)) > most) {
       // Cells were deleted, so the budget is smaller now.

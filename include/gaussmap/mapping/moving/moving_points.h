@@ -40,25 +40,37 @@ struct ScanEvidence {
   std::size_t cells_visited = 0;  ///< number of tests of finest cells, over all scans
 };
 
-/// Decides which cells held an object that has moved. Lengths are in metres, so they do not change with the resolution.
+/// Decides which cells held an object that has moved. Lengths that are std::nullopt have the default that stands with
+/// them, see VisibilityOptions.
 struct MovingCellOptions {
   OccupancyOptions occupancy;  ///< log-odds per hit and per miss
   double min_points = 10.0;    ///< connected freed cells with fewer points together are noise and not moving
   /// The same limit if a scan is from a depth camera, at least min_points. It is a patch of 7 x 7 pixels: three
   /// standard deviations of the lateral noise to each side, about 1 pixel each (Nguyen 2012).
   double min_points_of_camera = 50.0;
-  double link = 0.2;   ///< cells up to this far apart are connected [m]; adjacent cells always are
-  double reach = 0.5;  ///< maximum distance that an object extends beyond its freed cells [m]
+  /// Cells up to this far apart are connected [m]; adjacent cells always are. std::nullopt: 0.2 m, or 10 cells if that
+  /// is less.
+  std::optional<double> link = std::nullopt;
+  /// Maximum distance that an object extends beyond its freed cells [m]. std::nullopt: 0.5 m, or 25 cells if that is
+  /// less.
+  std::optional<double> reach = std::nullopt;
 };
 
 /// Separates the points of an object from those of a floor or wall in the same cell. The scans before and after the
-/// object was in the cell define the surface of the floor or wall.
+/// object was in the cell define the surface of the floor or wall. Lengths that are std::nullopt have the default that
+/// stands with them, see VisibilityOptions.
 struct SharedCellOptions {
-  double reach = 0.6;      ///< cells within this distance can contribute points to the surface [m]
-  double flatness = 0.04;  ///< maximum standard deviation of the points across a surface [m]
+  /// Cells within this distance can contribute points to the surface [m]. std::nullopt: 0.6 m, or 30 cells if that is
+  /// less.
+  std::optional<double> reach = std::nullopt;
+  /// Maximum standard deviation of the points across a surface [m]. std::nullopt: 0.04 m, or 2 cells if that is less.
+  std::optional<double> flatness = std::nullopt;
   /// Maximum distance from the surface of a point that belongs to it [m]. Three standard deviations across the surface
-  /// are used instead if they are larger.
-  double noise = 0.01;
+  /// are used instead if they are larger. std::nullopt: 0.01 m, or 0.5 cells if that is less.
+  std::optional<double> noise = std::nullopt;
+  /// Minimum standard deviation of the points along the second axis of a surface [m]. std::nullopt: 0.05 m, or 2.5
+  /// cells if that is less.
+  std::optional<double> extent = std::nullopt;
 };
 
 /// Options of MovingPoints.
@@ -153,7 +165,8 @@ struct FreePointOptions {
 /// - It is free if the nearest surfaces of the map in its direction lie clearly behind it. For this test, the means of
 ///   the leaves that are not free are drawn into a range image with pixels of 1 degree, as seen from `sensor` (see
 ///   visibilityOf()). The map has usually seen these surfaces through the place, if its sensors were near `sensor`.
-/// - It is also free if a chain of at most four adjacent cubes of 0.2 m connects it to a free place. Each cube of the
+/// - It is also free if a chain of at most four adjacent cubes connects it to a free place. The side of a
+///   cube is 0.2 m, or ten finest cells of the map if that is less. Each cube of the
 ///   chain must hold a free point or a point without a cell. This rule finds the edges and the feet of an object.
 ///
 /// So a static object that the map has not seen gets false, unless it stands in front of a surface of the map. Throws

@@ -26,10 +26,39 @@ enum class LearningRate {
   Occupancy    ///< Yguel 2009 eq. (5): slowly where the map was often observed, faster where it is uncertain
 };
 
+/// What raises the occupancy of a cluster.
+enum class HitRule {
+  /// A point of the scan in a finest cell hits the cluster of this cell and all its ancestors. Range images only lower
+  /// the occupancy, and only that of other clusters.
+  Points,
+  /// The range image decides, as in Yguel 2009 sec. 4.1: samples at the surface that the beams hit raise the occupancy,
+  /// samples that the beams passed through lower it, and others change nothing. A cluster changes by the mean over its
+  /// samples. Each cluster of each scale is tested by itself, so the cluster that learns has its own occupancy.
+  RangeImage
+};
+
 /// The points of a cluster that are tested against a range image.
 enum class OccupancySamples {
   Mean,   ///< the mean of the cluster
-  Random  ///< random samples, one per pixel that can see the cluster (at most 100), Yguel 2009 eq. (1): slower
+  Random  ///< random samples, one per pixel that can see the cell, Yguel 2009 eq. (1): slower
+};
+
+/// The place whose distance from the sensor gives the number of random samples, delta in eq. (1).
+enum class SampleRange {
+  Mean,       ///< the mean of the cluster
+  CellCentre  ///< the centre of the cell of the cluster, as in Yguel 2009
+};
+
+/// The factor of a finer cluster in the error of a coarse cell, Yguel 2009 eq. (6).
+enum class ErrorFactor {
+  One,          ///< all finer clusters count alike
+  OneMinusRate  ///< 1 - eps, with the learning rate of eq. (5); LearningRate::Occupancy only
+};
+
+/// The coarse cells that a refinement can give clusters to.
+enum class RefineArea {
+  Known,   ///< all cells of the map; their need is that of the last refinement that touched them
+  Visible  ///< cells with points of the present scan, Yguel 2009 sec. 5.1
 };
 
 /// Options of OnlineMapper.
@@ -43,8 +72,13 @@ struct GAUSSMAP_API OnlineOptions {
   double fastest_rate = 5e-2;  ///< eps_max of eq. (5), LearningRate::Occupancy only, in [slowest_rate, 1]
 
   OccupancyOptions occupancy;                         ///< log-odds per hit and per miss
+  HitRule hit_rule = HitRule::Points;                 ///< what raises the occupancy of a cluster
   VisibilityOptions visibility;                       ///< when a beam passes through a cluster
   OccupancySamples samples = OccupancySamples::Mean;  ///< which points of a cluster are tested
+  SampleRange sample_range = SampleRange::Mean;       ///< OccupancySamples::Random only: delta of eq. (1)
+  /// Maximum number of random samples per cluster, >= 0. 0: only the number of pixels of the range image, because B of
+  /// eq. (1) has no limit close to the sensor.
+  int max_samples = 100;
   /// Projection of every scan; std::nullopt: determined from the points, and again if a scan does not fit it.
   std::optional<Projection> projection;
   /// Pixels without return are free space up to this range [m]; std::nullopt: they show nothing.
@@ -55,11 +89,15 @@ struct GAUSSMAP_API OnlineOptions {
   /// before. Their sums of points per cell are used by `shared`, which needs at least 1.
   int look_back = 10;
 
-  /// Deletes finest clusters with log-odds below 0 and the other cells of their objects, then coarse clusters without
-  /// children. The object of such a cell: connected cells that were hit only between its first and its last hit.
+  /// Deletes finest clusters that a scan has lowered below `forget_below`, and the other cells of their objects, then
+  /// coarse clusters without children. The object of such a cell: connected cells that were hit only between its first
+  /// and its last hit.
   bool forget = true;
-  double link = MovingCellOptions().link;    ///< from one connected cell to the next, at most this [m] or one cell
-  double reach = MovingCellOptions().reach;  ///< maximum distance of these cells from that with log-odds below 0 [m]
+  double forget_below = 0.0;  ///< limit of the deletion [log-odds], between -max_log_odds and max_log_odds
+  /// From one connected cell to the next, at most this [m] or one cell; std::nullopt: see MovingCellOptions::link.
+  std::optional<double> link = std::nullopt;
+  /// Maximum distance of these cells from that below the limit [m]; std::nullopt: see MovingCellOptions::reach.
+  std::optional<double> reach = std::nullopt;
   /// In cells beside a deleted object that also hold a surface (floor or wall): deletes the points off the surface from
   /// those of the last look_back scans that can have seen the object. Needs `forget` and LearningRate::SampleMean.
   SharedCellOptions shared;
@@ -71,22 +109,37 @@ struct GAUSSMAP_API OnlineOptions {
   double budget = 3.0;  ///< maximum Gaussians of a coarse scale after a refinement, as a multiple of its cells, >= 1
   RefineMethod method = RefineMethod::Agglomerate;        ///< how the clusters of a coarse cell are found
   ClusterSeed seed_rule = ClusterSeed::ParentCovariance;  ///< RefineMethod::Insert only
+  RefineArea refine_area = RefineArea::Known;             ///< which cells can get clusters
+  ErrorFactor error_factor = ErrorFactor::One;            ///< factor of eq. (6); also in OnlineStatistics::errors
   int threads = 0;                                        ///< 0 = all cores
 
   /// Returns the options of the paper, Yguel 2009, for `dimensions` = 2 or 3.
   ///
   /// - Cells: three scales, ratio 10, finest side 0.05 m in 2-D, 0.1 m in 3-D (sec. 6).
   /// - Learning: the rate depends on the occupancy, eq. (5), between 5e-4 and 5e-2, o_max = 10 (sec. 4.4, Algorithm 1).
-  /// - Occupancy: random samples of each cluster, their number B from eq. (1), for every scan in 2-D and every third
-  ///   scan in 3-D (sec. 4.1, 6).
-  /// - Deletion: clusters of low occupancy, without the other cells of their objects (sec. 5.3).
-  /// - Refinement: every 10 scans, the p = 4 cells of largest error of each scale get one cluster each, within the
-  ///   budget. The new cluster starts as a copy of the Gaussian of largest distortion (sec. 5.1, 6, Algorithm 2).
+  /// - Occupancy: the range image raises and lowers every cluster of every scale, by the mean over B random samples of
+  ///   the cluster. B is that of eq. (1), with the range to the centre of the cell. Every scan in 2-D, every third scan
+  ///   in 3-D (sec. 4.1, 6).
+  /// - Deletion: clusters of low occupancy, without the other cells of their objects (sec. 5.3). Earlier scans are not
+  ///   used.
+  /// - Refinement: every 10 scans, the p = 4 visible cells of largest error of each scale get one cluster each, within
+  ///   the budget. The error of eq. (6) has the factor 1 - eps. The new cluster starts as a copy of the Gaussian of
+  ///   largest distortion (sec. 5.1, 6, Algorithm 2).
   ///
   /// The paper does not give the log-odds per hit and miss, the deletion threshold, the test whether a beam passes
-  /// through a point, and the size of the budget. Here they have the defaults of this library. Two details differ from
-  /// the paper: the error of eq. (6) has no factor (1 - eps), and a refinement can also choose cells that an earlier
-  /// scan touched. Throws std::invalid_argument for any other value of `dimensions`.
+  /// through a point, and the size of the budget. Here they have the defaults of this library. Where the paper leaves
+  /// its method open, this library decides:
+  /// - A new cluster starts at its first point, with the covariance of the noise floor and log-odds 0. Every covariance
+  ///   that learns keeps the noise floor, so that it stays invertible.
+  /// - B has no limit where the sensor is close to the centre of a cell. It is limited to the pixels of the image.
+  /// - A cell is visible if it holds a point of the present scan.
+  /// - p clusters per scale. No field of view per scale (sec. 3), because the paper gives none; see max_ranges.
+  /// - A coarse cluster is deleted with its last child, whatever its own occupancy: the clustering that adjusts the
+  ///   others leaves no cluster without members.
+  /// - A cluster of a new partition inherits the occupancy of the old cluster with the largest part of its weight.
+  /// - The loop of swaps ends after 20 rounds.
+  ///
+  /// Throws std::invalid_argument for any other value of `dimensions`.
   static OnlineOptions yguel2009(int dimensions);
 };
 
@@ -157,7 +210,8 @@ class GAUSSMAP_API OnlineMapper {
   GaussianMap<D> map() const;
   /// Returns the number of scans added.
   std::size_t scans() const;
-  /// Returns the options. If map.noise was 0, it is replaced by its automatic value (resolution / 20).
+  /// Returns the options, with all lengths set. If map.noise was 0, it is replaced by its automatic value (resolution /
+  /// 20).
   const OnlineOptions& options() const;
   /// Returns the approximate number of bytes in use.
   std::size_t memoryBytes() const;
