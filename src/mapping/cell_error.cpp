@@ -4,17 +4,23 @@
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 #include "clustering/small_cholesky.h"
 
 namespace gaussmap::detail {
 
 template <int D>
-double cellError(const std::vector<Gaussian<D>>& centres, const std::vector<Gaussian<D>>& data) {
+double cellError(const std::vector<Gaussian<D>>& centres, const std::vector<Gaussian<D>>& data,
+                 const std::vector<double>& factors) {
+  if (!factors.empty() && factors.size() != data.size())
+    throw std::invalid_argument("cellError: " + std::to_string(factors.size()) + " factors for " +
+                                std::to_string(data.size()) + " finer Gaussians");
   if (data.empty()) return 0.0;
   if (centres.empty()) throw std::invalid_argument("cellError: no clusters to represent the finer Gaussians");
   double sum = 0.0;
-  for (const Gaussian<D>& z : data) {
+  for (std::size_t j = 0; j < data.size(); ++j) {
+    const Gaussian<D>& z = data[j];
     const SmallCholesky<D> factor(z.cov);
     if (!factor.positive) throw std::domain_error("cellError: a finer covariance is not positive definite");
     double nearest = std::numeric_limits<double>::infinity();
@@ -22,12 +28,14 @@ double cellError(const std::vector<Gaussian<D>>& centres, const std::vector<Gaus
       const Vector<D> difference = w.mean - z.mean;
       nearest = std::min(nearest, (factor.whitening * difference).squaredNorm());
     }
-    sum += nearest;
+    sum += factors.empty() ? nearest : factors[j] * nearest;
   }
   return sum / static_cast<double>(data.size());  // eq. (6)
 }
 
-template double cellError<2>(const std::vector<Gaussian<2>>&, const std::vector<Gaussian<2>>&);
-template double cellError<3>(const std::vector<Gaussian<3>>&, const std::vector<Gaussian<3>>&);
+template double cellError<2>(const std::vector<Gaussian<2>>&, const std::vector<Gaussian<2>>&,
+                             const std::vector<double>&);
+template double cellError<3>(const std::vector<Gaussian<3>>&, const std::vector<Gaussian<3>>&,
+                             const std::vector<double>&);
 
 }  // namespace gaussmap::detail
