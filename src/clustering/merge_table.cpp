@@ -22,6 +22,7 @@ namespace {
 
 constexpr double kLargest = 1e300;  // limits of a determinant; they keep costs finite
 constexpr double kSmallest = 1e-300;
+constexpr double kRemoved = -1e300;  // the size of a removed slot is smaller
 constexpr double kMaxWeight = 1e100;
 constexpr std::size_t kMaxData = 0x7FFFFFFF;
 
@@ -53,20 +54,104 @@ GAUSSMAP_INLINE double determinant(const double* m) {
     return m[0] * (m[3] * m[5] - m[4] * m[4]) - m[1] * (m[1] * m[5] - m[4] * m[2]) + m[2] * (m[1] * m[4] - m[3] * m[2]);
 }
 
+/// Limits a determinant, so that overflow does not reach the costs.
+GAUSSMAP_INLINE double limited(double det) {
+  det = det < kLargest ? det : kLargest;  // replaces NaN too
+  return det > kSmallest ? det : kSmallest;
+}
+
 /// Returns det S of a cluster with scatter w S, limited so that rounding and overflow do not reach the costs.
 template <int D>
 GAUSSMAP_INLINE double covarianceDeterminant(const double* scatter, double inverse_weight) {
   double det = determinant<D>(scatter);
   GAUSSMAP_UNROLL
   for (int axis = 0; axis < D; ++axis) det *= inverse_weight;
-  det = det < kLargest ? det : kLargest;  // replaces NaN too
-  return det > kSmallest ? det : kSmallest;
+  return limited(det);
 }
 
 template <int D>
 double sizeOf(const double* scatter, double weight, MergeCost cost) {
   const double det = covarianceDeterminant<D>(scatter, 1.0 / weight);
   return cost == MergeCost::Runnalls ? weight * naturalLogarithm(det) : std::sqrt(det);
+}
+
+/// Inverts a covariance S = L D L', upper triangle by rows, and returns det S, limited. The pivots have a lower limit,
+/// because rounding can make them 0 or negative. SmallCholesky is not used, because other files compile it with fused
+/// multiply-adds.
+template <int D>
+double invert(const double* cov, double* inverse) {
+  const auto pivot = [](double value, double diagonal) {
+    const double least = 1e-16 * diagonal;
+    return value > least ? value : least;  // replaces NaN too
+  };
+  const double first = pivot(cov[0], cov[0]), l10 = cov[1] / first;
+  if constexpr (D == 2) {
+    const double second = pivot(cov[2] - l10 * cov[1], cov[2]);
+    inverse[2] = 1.0 / second;
+    inverse[1] = -l10 / second;
+    inverse[0] = 1.0 / first + l10 * l10 / second;
+    return limited(first * second);
+  } else {
+    const double l20 = cov[2] / first;
+    const double second = pivot(cov[3] - l10 * cov[1], cov[3]);
+    const double rest = cov[4] - l20 * cov[1], l21 = rest / second;
+    const double third = pivot(cov[5] - l20 * cov[2] - l21 * rest, cov[5]);
+    const double m20 = l10 * l21 - l20;  // of L^-1, whose other entries are -l10 and -l21
+    inverse[5] = 1.0 / third;
+    inverse[4] = -l21 / third;
+    inverse[3] = 1.0 / second + l21 * l21 / third;
+    inverse[2] = m20 / third;
+    inverse[1] = -l10 / second - l21 * m20 / third;
+    inverse[0] = 1.0 / first + l10 * l10 / second + m20 * m20 / third;
+    return limited(first * second * third);
+  }
+}
+
+/// The cost loop of MergeCost::KL: per pair the smaller one of both divergences, eq. (8).
+template <int D>
+GAUSSMAP_INLINE void divergenceLoop(const MergeColumns<D>& columns, std::size_t i, std::size_t first, std::size_t last,
+                                    double* __restrict out) {
+  constexpr int kScatter = MergeColumns<D>::kScatter;
+  constexpr int kRow[] = {0, 0, D == 2 ? 1 : 0, 1, 1, 2}, kColumn[] = {0, 1, D == 2 ? 1 : 2, 1, 2, 2};
+  double mean_i[D], cov_i[kScatter], precision_i[kScatter];
+  const double *mean[D], *scatter[kScatter], *precision[kScatter];
+  const double inverse_i = 1.0 / columns.weight[i];
+  GAUSSMAP_UNROLL
+  for (int axis = 0; axis < D; ++axis) {
+    mean_i[axis] = columns.mean[axis][i];
+    mean[axis] = columns.mean[axis] + first;
+  }
+  GAUSSMAP_UNROLL
+  for (int entry = 0; entry < kScatter; ++entry) {
+    const double times = kRow[entry] == kColumn[entry] ? 1.0 : 2.0;  // the other triangle is equal
+    cov_i[entry] = columns.scatter[entry][i] * inverse_i;
+    precision_i[entry] = times * columns.precision[entry][i];
+    scatter[entry] = columns.scatter[entry] + first;
+    precision[entry] = columns.precision[entry] + first;
+  }
+  const double size_i = columns.size[i];
+  const double *weight = columns.weight + first, *size = columns.size + first;
+  const std::size_t count = last - first;
+  for (std::size_t j = 0; j < count; ++j) {
+    const double inverse = 1.0 / weight[j];
+    double difference[D];
+    GAUSSMAP_UNROLL
+    for (int axis = 0; axis < D; ++axis) difference[axis] = mean_i[axis] - mean[axis][j];
+    double to_j = 0.0, to_i = 0.0;  // tr((S_i + d d') S_j^-1) and tr((S_j + d d') S_i^-1)
+    GAUSSMAP_UNROLL
+    for (int entry = 0; entry < kScatter; ++entry) {
+      const double apart = difference[kRow[entry]] * difference[kColumn[entry]];
+      const double times = kRow[entry] == kColumn[entry] ? 1.0 : 2.0;
+      to_j += (cov_i[entry] + apart) * (times * precision[entry][j]);
+      to_i += (scatter[entry][j] * inverse + apart) * precision_i[entry];
+    }
+    double cost_j = 0.5 * ((to_j + (size[j] - size_i)) - D), cost_i = 0.5 * ((to_i + (size_i - size[j])) - D);
+    cost_j = cost_j < kLargest ? cost_j : kLargest;  // replaces NaN too
+    cost_i = cost_i < kLargest ? cost_i : kLargest;
+    const double cost = cost_j < cost_i ? cost_j : cost_i;
+    const bool is_removed = !(size_i > kRemoved && size[j] > kRemoved);
+    out[j] = is_removed ? std::numeric_limits<double>::infinity() : cost;
+  }
 }
 
 template <int D, MergeCost Cost>
@@ -119,6 +204,14 @@ GAUSSMAP_COST_LOOP(3, Volume)
 GAUSSMAP_COST_LOOP(2, Runnalls)
 GAUSSMAP_COST_LOOP(3, Runnalls)
 #undef GAUSSMAP_COST_LOOP
+#define GAUSSMAP_COST_LOOP(D)                                                                                         \
+  GAUSSMAP_CLONES void costsKL##D(const MergeColumns<D>& columns, std::size_t i, std::size_t first, std::size_t last, \
+                                  double* out) {                                                                      \
+    divergenceLoop<D>(columns, i, first, last, out);                                                                  \
+  }
+GAUSSMAP_COST_LOOP(2)
+GAUSSMAP_COST_LOOP(3)
+#undef GAUSSMAP_COST_LOOP
 
 [[noreturn]] void refuse(std::size_t j, const std::string& what) {
   throw std::invalid_argument("agglomerate: Gaussian " + std::to_string(j) + ": the " + what);
@@ -161,17 +254,18 @@ MergeTable<D>::MergeTable(const std::vector<Gaussian<D>>& data, const std::vecto
     : cost_(cost), slots_(data.size()) {
   checkData<D>(data, areas);
   constexpr int kScatter = MergeColumns<D>::kScatter;
-  values_.resize(slots_ * (D + kScatter + 2));
+  values_.resize(slots_ * (D + kScatter + 2 + (cost == MergeCost::KL ? kScatter : 0)));
   double* column = values_.data();
   const auto nextColumn = [&] { return std::exchange(column, column + slots_); };
   for (double*& mean : columns_.mean) mean = nextColumn();
   for (double*& scatter : columns_.scatter) scatter = nextColumn();
+  for (double*& precision : columns_.precision) precision = cost == MergeCost::KL ? nextColumn() : nullptr;
   columns_.weight = nextColumn();
   columns_.size = nextColumn();
 
   const Vector<D> middle = middleOf(data);
   for (std::size_t j = 0; j < slots_; ++j) {
-    const double weight = cost == MergeCost::Runnalls ? data[j].weight : areas[j];
+    const double weight = cost == MergeCost::Volume ? areas[j] : data[j].weight;
     double scatter[kScatter];
     for (int row = 0, entry = 0; row < D; ++row) {
       columns_.mean[row][j] = data[j].mean(row) - middle(row);
@@ -179,16 +273,30 @@ MergeTable<D>::MergeTable(const std::vector<Gaussian<D>>& data, const std::vecto
         columns_.scatter[entry][j] = scatter[entry] = weight * data[j].cov(row, column_of);
     }
     columns_.weight[j] = weight;
-    columns_.size[j] = sizeOf<D>(scatter, weight, cost);
+    if (cost == MergeCost::KL)
+      setPrecision(j);
+    else
+      columns_.size[j] = sizeOf<D>(scatter, weight, cost);
   }
+}
+
+template <int D>
+void MergeTable<D>::setPrecision(std::size_t slot) {
+  constexpr int kScatter = MergeColumns<D>::kScatter;
+  double cov[kScatter], precision[kScatter];
+  for (int entry = 0; entry < kScatter; ++entry) cov[entry] = columns_.scatter[entry][slot] / columns_.weight[slot];
+  columns_.size[slot] = naturalLogarithm(invert<D>(cov, precision));
+  for (int entry = 0; entry < kScatter; ++entry) columns_.precision[entry][slot] = precision[entry];
 }
 
 template <int D>
 void MergeTable<D>::costs(std::size_t i, std::size_t first, std::size_t last, double* out) const {
   if constexpr (D == 2) {
+    if (cost_ == MergeCost::KL) return costsKL2(columns_, i, first, last, out);
     if (cost_ == MergeCost::Runnalls) return costsRunnalls2(columns_, i, first, last, out);
     costsVolume2(columns_, i, first, last, out);
   } else {
+    if (cost_ == MergeCost::KL) return costsKL3(columns_, i, first, last, out);
     if (cost_ == MergeCost::Runnalls) return costsRunnalls3(columns_, i, first, last, out);
     costsVolume3(columns_, i, first, last, out);
   }
@@ -213,7 +321,10 @@ void MergeTable<D>::unite(std::size_t a, std::size_t b) {
       entries[a] = scatter[entry];
     }
   columns_.weight[a] = sum;
-  columns_.size[a] = sizeOf<D>(scatter, sum, cost_);
+  if (cost_ == MergeCost::KL)
+    setPrecision(a);
+  else
+    columns_.size[a] = sizeOf<D>(scatter, sum, cost_);
   columns_.size[b] = -std::numeric_limits<double>::infinity();
 }
 
@@ -224,6 +335,8 @@ void MergeTable<D>::keep(const std::vector<std::uint32_t>& kept) {
   };
   for (double* mean : columns_.mean) squeeze(mean);
   for (double* scatter : columns_.scatter) squeeze(scatter);
+  if (cost_ == MergeCost::KL)
+    for (double* precision : columns_.precision) squeeze(precision);
   squeeze(columns_.weight);
   squeeze(columns_.size);
   slots_ = kept.size();

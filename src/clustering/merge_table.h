@@ -14,10 +14,13 @@ namespace gaussmap::detail {
 template <int D>
 struct MergeColumns {
   static constexpr int kScatter = D * (D + 1) / 2;
-  double* mean[D];            // relative to the middle of the input
-  double* scatter[kScatter];  // weight * covariance, upper triangle by rows
-  double* weight;             // for the moment match: areas (Volume) or weights (Runnalls)
-  double* size;               // sqrt(det S) or w ln det S; -infinity in a removed slot: merging with it costs infinity
+  double* mean[D];              // relative to the middle of the input
+  double* scatter[kScatter];    // weight * covariance, upper triangle by rows
+  double* precision[kScatter];  // KL only: S^-1, upper triangle by rows
+  double* weight;               // for the moment match: areas (Volume) or weights (Runnalls, KL)
+  /// Volume: sqrt(det S), Runnalls: w ln det S, KL: ln det S; -infinity in a removed slot: merging with it costs
+  /// infinity
+  double* size;
 };
 
 /// The clusters that are being merged, one per slot, stored as columns. The costs of merging a cluster with all others
@@ -46,6 +49,9 @@ class MergeTable {
   double mean(std::size_t slot, int axis) const { return columns_.mean[axis][slot]; }
 
  private:
+  /// KL only: sets the precision and size of a slot from its scatter.
+  void setPrecision(std::size_t slot);
+
   MergeCost cost_;
   std::size_t slots_;
   std::vector<double> values_;

@@ -13,6 +13,9 @@
 #include "editing/ellipsoid.h"
 #include "editing/keep_cells.h"
 #include "gaussmap/map/sampling.h"
+#include "map/coarsen.h"
+#include "mapping/cell_error.h"
+#include "mapping/error_factors.h"
 #include "points/nearest_distances.h"
 
 namespace gaussmap {
@@ -99,9 +102,52 @@ class CellCoverage {
   std::vector<Vector<D>> data_;  // [m], map frame
 };
 
+/// Decides which cells have a small error, eq. (6), and only such cells below them.
+template <int D>
+class CellErrorTest {
+ public:
+  CellErrorTest(const GaussianMap<D>& map, double max_error, const CompressOptions& options)
+      : good_(static_cast<std::size_t>(map.scales())) {
+    good_.front().assign(map.cellCount(0), true);
+    for (int s = 1; s < map.scales(); ++s) {
+      const std::vector<char>& finer = good_[static_cast<std::size_t>(s) - 1];
+      std::vector<char>& good = good_[static_cast<std::size_t>(s)];
+      good.resize(map.cellCount(s));
+      parallelFor(good.size(), options.threads, 16, [&](std::size_t cell) {
+        const IndexRange children = map.childCells(cell, s);
+        good[cell] =
+            std::all_of(finer.begin() + static_cast<std::ptrdiff_t>(children.first),
+                        finer.begin() + static_cast<std::ptrdiff_t>(children.last), [](char one) { return one; }) &&
+            errorOf(map, cell, s, options) <= max_error;
+      });
+    }
+  }
+
+  /// Returns one flag per cell: true if the cell has a flag in `asked` and is good enough.
+  std::vector<char> goodCells(int s, const std::vector<char>& asked) const {
+    std::vector<char> good = good_[static_cast<std::size_t>(s)];
+    for (std::size_t cell = 0; cell < good.size(); ++cell) good[cell] = good[cell] && asked[cell];
+    return good;
+  }
+
+ private:
+  static double errorOf(const GaussianMap<D>& map, std::size_t cell, int s, const CompressOptions& options) {
+    std::vector<Gaussian<D>> centres, data;
+    const IndexRange clusters = map.gaussiansOf(cell, s);
+    for (std::size_t i = clusters.first; i < clusters.last; ++i) centres.push_back(map.localGaussian(i, s));
+    gatherUnder(map.scale(s - 1), map.grid(), s - 1, map.childCells(cell, s), data);
+    return cellError(centres, data,
+                     options.learning_factor ? errorFactors<D>(map.scale(s - 1), map.gaussiansUnder(cell, s))
+                                             : std::vector<double>());
+  }
+
+  std::vector<std::vector<char>> good_;  // per scale
+};
+
 template <int D>
 void check(const GaussianMap<D>& map, double max_error, const CompressOptions& options) {
-  require(std::isfinite(max_error) && max_error > 0.0, "max_error", max_error, "must be a positive number of metres");
+  require(std::isfinite(max_error) && max_error > 0.0, "max_error", max_error,
+          options.by == CompressBy::Distance ? "must be a positive number of metres" : "must be positive and finite");
   require(options.samples >= 1, "samples", static_cast<double>(options.samples), "must be at least 1");
   if (map.isCompressed())
     throw std::invalid_argument(
@@ -109,19 +155,15 @@ void check(const GaussianMap<D>& map, double max_error, const CompressOptions& o
         "was made from");
 }
 
-}  // namespace
-
-template <int D>
-GaussianMap<D> compress(GaussianMap<D> map, double max_error, const CompressOptions& options) {
-  check(map, max_error, options);
-  if (map.empty() || map.scales() == 1) return map;
-  const CellCoverage<D> coverage(map, max_error, options);
+/// Deletes everything below the good cells; test.goodCells(s, asked) returns those of scale s.
+template <int D, typename Test>
+GaussianMap<D> withoutDetail(const GaussianMap<D>& map, const Test& test) {
   std::vector<std::vector<char>> keep(static_cast<std::size_t>(map.scales()));
   keep.back().assign(map.cellCount(map.scales() - 1), true);
   bool thinner = false;
   for (int s = map.scales() - 1; s > 0; --s) {
     const std::vector<char>& kept = keep[static_cast<std::size_t>(s)];
-    const std::vector<char> good = coverage.goodCells(s, kept);
+    const std::vector<char> good = test.goodCells(s, kept);
     std::vector<char>& finer = keep[static_cast<std::size_t>(s) - 1];
     finer.resize(map.cellCount(s - 1));
     for (std::size_t cell = 0; cell < kept.size(); ++cell) {
@@ -132,6 +174,23 @@ GaussianMap<D> compress(GaussianMap<D> map, double max_error, const CompressOpti
     }
   }
   return thinner ? keepCells<D>(map, keep) : map;
+}
+
+}  // namespace
+
+CompressOptions CompressOptions::yguel2009() {
+  CompressOptions options;
+  options.by = CompressBy::CellError;
+  options.learning_factor = true;
+  return options;
+}
+
+template <int D>
+GaussianMap<D> compress(GaussianMap<D> map, double max_error, const CompressOptions& options) {
+  check(map, max_error, options);
+  if (map.empty() || map.scales() == 1) return map;
+  if (options.by == CompressBy::CellError) return withoutDetail<D>(map, CellErrorTest<D>(map, max_error, options));
+  return withoutDetail<D>(map, CellCoverage<D>(map, max_error, options));
 }
 
 template GaussianMap<2> compress<2>(GaussianMap<2>, double, const CompressOptions&);

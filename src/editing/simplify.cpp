@@ -41,7 +41,8 @@ GaussianMap<D> simplifyByCount(GaussianMap<D> map, const Budget& budget, const S
     areas = s > 0 ? areasOf<D>(scale, grid, s, *finer, finer_areas) : finestAreas<D>(scale);
     const std::size_t extra = extraGaussians(budget, s, scale.keys.size(), scale.gaussianCount(), kAsManyAsNow);
     if (scale.keys.size() + extra >= scale.gaussianCount()) continue;
-    const ClusterCut cut = ScaleClusters::within(scale, grid, s, areas, options.merge_cost, options.threads).cut(extra);
+    ClusterCut cut = ScaleClusters::within(scale, grid, s, areas, options.merge_cost, options.threads).cut(extra);
+    if (options.smooth) cut = smoothed<D>(scale, grid, s, cut, options.threads);
     mergeClusters<D>(scale, finer, grid, s, cut);
     if (finer != nullptr) matchClusters<D>(*finer, scale, grid, s);
     areas = mergedAreas(areas, cut);
@@ -108,6 +109,13 @@ RefineResult<D> simplifyToBytes(GaussianMap<D> map, const MaxBytes& budget, cons
 }
 
 }  // namespace
+
+SimplifyOptions SimplifyOptions::yguel2009() {
+  SimplifyOptions options;
+  options.merge_cost = MergeCost::KL;
+  options.smooth = true;
+  return options;
+}
 
 template <int D>
 RefineResult<D> simplify(GaussianMap<D> map, const Budget& budget, const SimplifyOptions& options) {

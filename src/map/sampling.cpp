@@ -122,6 +122,14 @@ MapSamples<D> sampleChosen(const GaussianMap<D>& map, const std::vector<Gaussian
 
 }  // namespace
 
+SampleOptions SampleOptions::yguel2009() {
+  SampleOptions options;
+  options.at_least = 0;
+  options.share = SampleShare::Volume;
+  options.bounds = SampleBounds::Cell;
+  return options;
+}
+
 template <int D>
 std::vector<Vector<D>> MapSamples<D>::within(double sigmas) const {
   std::vector<Vector<D>> kept;

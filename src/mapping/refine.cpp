@@ -18,6 +18,8 @@ RefineOptions RefineOptions::yguel2009() {
   options.method = RefineMethod::Insert;
   options.queue = 4;
   options.seed_rule = ClusterSeed::InputGaussian;
+  options.only_occupied = true;
+  options.learning_factor = true;
   return options;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mapping/refine_insert.h"
 
+#include <cmath>
 #include <queue>
 #include <utility>
 
@@ -8,6 +9,7 @@
 #include "gaussmap/clustering/kl_kmeans.h"
 #include "gaussmap/core/gaussian.h"
 #include "mapping/cell_error.h"
+#include "mapping/error_factors.h"
 
 namespace gaussmap::detail {
 namespace {
@@ -85,11 +87,27 @@ class InsertionRefiner {
     if (error > 0.0 && clusterCount(cell) < scale_.gaussiansUnder(cell).size()) queue_.push({error, cell});
   }
 
+  /// Returns true if the mean probability of occupancy of the finer Gaussians under the cell is above one half.
+  bool isOccupied(std::size_t cell) const {
+    if (scale_.finer.log_odds.empty()) return true;
+    const IndexRange under = scale_.gaussiansUnder(cell);
+    double sum = 0.0;
+    for (std::size_t i = under.first; i < under.last; ++i)
+      sum += 1.0 / (1.0 + std::exp(-static_cast<double>(scale_.finer.log_odds[i])));
+    return sum > 0.5 * static_cast<double>(under.size());
+  }
+
+  /// Returns the factors of the finer Gaussians under the cell in eq. (6), or an empty vector if all are 1.
+  std::vector<double> factorsUnder(std::size_t cell) const {
+    return options_.learning_factor ? errorFactors<D>(scale_.finer, scale_.gaussiansUnder(cell))
+                                    : std::vector<double>();
+  }
+
   void fillQueue() {
     std::vector<double> errors(cells_.size());
     parallelFor(cells_.size(), options_.threads, 64, [&](std::size_t cell) {
-      if (scale_.gaussiansUnder(cell).size() < 2) return;
-      errors[cell] = cellError<D>({scale_.coarse.gaussians[cell]}, scale_.dataUnder(cell));
+      if (scale_.gaussiansUnder(cell).size() < 2 || (options_.only_occupied && !isOccupied(cell))) return;
+      errors[cell] = cellError<D>({scale_.coarse.gaussians[cell]}, scale_.dataUnder(cell), factorsUnder(cell));
     });
     for (std::size_t cell = 0; cell < cells_.size(); ++cell) enqueue(cell, errors[cell]);
   }
@@ -120,7 +138,7 @@ class InsertionRefiner {
     options.seed_rule = options_.seed_rule;
     options.seed = seedOf(scale_.coarse.keys[cell], current.size());
     insertion.clustering = insertCluster(data, current, options);
-    insertion.error = cellError(insertion.clustering.centres, data);
+    insertion.error = cellError(insertion.clustering.centres, data, factorsUnder(cell));
   }
 
   /// Returns a separate seed for every insertion. It does not depend on the thread or the order of the insertions.

@@ -7,27 +7,12 @@
 
 #include "clustering/merge_gains.h"
 #include "core/parallel.h"
+#include "gaussmap/clustering/kl_kmeans.h"
 #include "map/inherit_occupancy.h"
 #include "mapping/clustering_noise.h"
 
 namespace gaussmap::detail {
 namespace {
-
-/// Adds the clustering noise and agglomerates. `first` = area of the first Gaussian.
-///
-/// No local search follows, because it gains little. The search that was tried moves single Gaussians to other clusters
-/// and exchanges merges for splits in other cells until nothing improves. It lowers the mean error of the coarsest
-/// scale by 4 % (street), 2 % (outdoor lidar) and less (office, building). The clusters of different budgets would then
-/// no longer be nested.
-template <int D>
-Dendrogram noisyDendrogram(std::vector<Gaussian<D>> data, std::vector<double>::const_iterator first,
-                           const Grid<D>& grid, MergeCost cost) {
-  if (data.size() < 2) return {data.size(), {}};
-  addClusteringNoise(data, grid.side(0));
-  AgglomerateOptions options;
-  options.cost = cost;
-  return agglomerate<D>(data, {first, first + static_cast<std::ptrdiff_t>(data.size())}, options);
-}
 
 std::vector<double>::const_iterator areaOf(const std::vector<double>& areas, std::size_t index) {
   return areas.begin() + static_cast<std::ptrdiff_t>(index);
@@ -60,7 +45,29 @@ std::vector<std::vector<std::uint32_t>> membersOf(const ClusterCut& cut) {
   return members;
 }
 
+/// Agglomerates the Gaussians of a cell. `first` = area of the first Gaussian.
+template <int D>
+Dendrogram dendrogramOf(std::vector<Gaussian<D>> data, std::vector<double>::const_iterator first, const Grid<D>& grid,
+                        MergeCost cost) {
+  std::vector<double> areas(first, first + static_cast<std::ptrdiff_t>(data.size()));
+  return agglomerateCell<D>(std::move(data), areas, grid.side(0), cost);
+}
+
 }  // namespace
+
+/// No local search follows, because it gains little. The search that was tried moves single Gaussians to other clusters
+/// and exchanges merges for splits in other cells until nothing improves. It lowers the mean error of the coarsest
+/// scale by 4 % (street), 2 % (outdoor lidar) and less (office, building). The clusters of different budgets would then
+/// no longer be nested.
+template <int D>
+Dendrogram agglomerateCell(std::vector<Gaussian<D>> data, const std::vector<double>& areas, double finest_side,
+                           MergeCost cost) {
+  if (data.size() < 2) return {data.size(), {}};
+  if (cost != MergeCost::KL) addClusteringNoise(data, finest_side);
+  AgglomerateOptions options;
+  options.cost = cost;
+  return agglomerate<D>(data, areas, options);
+}
 
 template <int D>
 ScaleClusters ScaleClusters::under(const ScalePair<D>& pair, const std::vector<double>& areas, MergeCost cost,
@@ -70,7 +77,7 @@ ScaleClusters ScaleClusters::under(const ScalePair<D>& pair, const std::vector<d
     const IndexRange under = pair.gaussiansUnder(cell);
     clusters.dendrograms_[cell].size = under.size();
     if (under.size() < 2) return;
-    clusters.dendrograms_[cell] = noisyDendrogram<D>(pair.dataUnder(cell), areaOf(areas, under.first), pair.grid, cost);
+    clusters.dendrograms_[cell] = dendrogramOf<D>(pair.dataUnder(cell), areaOf(areas, under.first), pair.grid, cost);
     clusters.gains_[cell] = mergeGains(clusters.dendrograms_[cell]);
   });
   return clusters;
@@ -87,7 +94,7 @@ ScaleClusters ScaleClusters::within(const MapScale<D>& scale, const Grid<D>& gri
     if (range.size() < 2 || (!keep.empty() && keep[cell])) return;
     std::vector<Gaussian<D>> data;
     for (std::size_t i = range.first; i < range.last; ++i) data.push_back(localGaussian(scale, grid, s, i));
-    clusters.dendrograms_[cell] = noisyDendrogram<D>(std::move(data), areaOf(areas, range.first), grid, cost);
+    clusters.dendrograms_[cell] = dendrogramOf<D>(std::move(data), areaOf(areas, range.first), grid, cost);
     clusters.gains_[cell] = mergeGains(clusters.dendrograms_[cell]);
   });
   return clusters;
@@ -146,6 +153,55 @@ ClusterCut onePerCell(const MapScale<D>& scale) {
   for (std::size_t cell = 0; cell < scale.keys.size(); ++cell)
     cut.cluster.insert(cut.cluster.end(), gaussiansOf(scale, cell).size(), static_cast<std::uint32_t>(cell));
   return cut;
+}
+
+template <int D>
+ClusterCut smoothed(const MapScale<D>& scale, const Grid<D>& grid, int s, const ClusterCut& cut, int threads) {
+  const std::size_t cells = scale.keys.size();
+  std::vector<std::vector<int>> label(cells);  // empty: the cell keeps the clusters of `cut`
+  parallelFor(cells, threads, 4, [&](std::size_t cell) {
+    const IndexRange range = gaussiansOf(scale, cell);
+    const std::size_t parts = cut.first[cell + 1] - cut.first[cell];
+    if (parts == 1 || parts == range.size()) return;
+    std::vector<Gaussian<D>> data;
+    for (std::size_t i = range.first; i < range.last; ++i) data.push_back(localGaussian(scale, grid, s, i));
+    for (std::size_t j = 0; j < data.size(); ++j)
+      label[cell].push_back(static_cast<int>(cut.cluster[range.first + j] - cut.first[cell]));
+    label[cell] = smoothedLabels<D>(data, label[cell], parts);
+  });
+  ClusterCut result;
+  result.first.push_back(0);
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    const std::uint32_t first = result.first.back();
+    std::uint32_t parts = cut.first[cell + 1] - cut.first[cell];
+    if (label[cell].empty()) {
+      const IndexRange range = gaussiansOf(scale, cell);
+      for (std::size_t i = range.first; i < range.last; ++i)
+        result.cluster.push_back(first + cut.cluster[i] - cut.first[cell]);
+    } else {
+      for (const int one : label[cell]) result.cluster.push_back(first + static_cast<std::uint32_t>(one));
+      parts = 1 + static_cast<std::uint32_t>(*std::max_element(label[cell].begin(), label[cell].end()));
+    }
+    result.first.push_back(first + parts);
+  }
+  return result;
+}
+
+template <int D>
+std::vector<Gaussian<D>> clustersOf(const std::vector<Gaussian<D>>& data, const std::vector<int>& label,
+                                    std::size_t parts) {
+  std::vector<std::vector<Gaussian<D>>> members(parts);
+  for (std::size_t i = 0; i < data.size(); ++i) members[static_cast<std::size_t>(label[i])].push_back(data[i]);
+  std::vector<Gaussian<D>> clusters;
+  clusters.reserve(parts);
+  for (const std::vector<Gaussian<D>>& part : members) clusters.push_back(merge(part));
+  return clusters;
+}
+
+template <int D>
+std::vector<int> smoothedLabels(const std::vector<Gaussian<D>>& data, const std::vector<int>& label,
+                                std::size_t parts) {
+  return KLKMeans<D>().run(data, clustersOf<D>(data, label, parts)).labels;
 }
 
 std::vector<double> mergedAreas(const std::vector<double>& areas, const ClusterCut& cut) {
@@ -248,6 +304,12 @@ void matchClusters(MapScale<D>& finer, MapScale<D>& scale, const Grid<D>& grid, 
   template ScaleClusters ScaleClusters::under<D>(const ScalePair<D>&, const std::vector<double>&, MergeCost, int);     \
   template ScaleClusters ScaleClusters::within<D>(const MapScale<D>&, const Grid<D>&, int, const std::vector<double>&, \
                                                   MergeCost, int, const std::vector<char>&);                           \
+  template Dendrogram agglomerateCell<D>(std::vector<Gaussian<(D)>>, const std::vector<double>&, double, MergeCost);   \
+  template std::vector<Gaussian<(D)>> clustersOf<D>(const std::vector<Gaussian<(D)>>&, const std::vector<int>&,        \
+                                                    std::size_t);                                                      \
+  template std::vector<int> smoothedLabels<D>(const std::vector<Gaussian<(D)>>&, const std::vector<int>&,              \
+                                              std::size_t);                                                            \
+  template ClusterCut smoothed<D>(const MapScale<D>&, const Grid<D>&, int, const ClusterCut&, int);                    \
   template ClusterCut onePerCell<D>(const MapScale<D>&);                                                               \
   template std::vector<Gaussian<(D)>> clusterGaussians<D>(const ScalePair<D>&, const ClusterCut&, int);                \
   template void setClusters<D>(const ScalePair<D>&, ClusterCut, int);                                                  \

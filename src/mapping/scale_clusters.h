@@ -44,6 +44,22 @@ struct ClusterCut {
   std::size_t clusters() const { return first.back(); }
 };
 
+/// Agglomerates the Gaussians of a cell. MergeCost::KL takes them as they are, as in the paper. With the other costs,
+/// the clustering noise is added first; `finest_side` = side of a finest cell [m].
+template <int D>
+Dendrogram agglomerateCell(std::vector<Gaussian<D>> data, const std::vector<double>& areas, double finest_side,
+                           MergeCost cost);
+
+/// Returns the moment matches of `parts` clusters; label[i] in [0, parts) is the cluster of Gaussian i.
+template <int D>
+std::vector<Gaussian<D>> clustersOf(const std::vector<Gaussian<D>>& data, const std::vector<int>& label,
+                                    std::size_t parts);
+
+/// Returns the labels after one run of KLKMeans that starts from these clusters (Yguel 2009, sec. 5.4). The run can
+/// drop clusters. The labels that are left are 0, 1, ...
+template <int D>
+std::vector<int> smoothedLabels(const std::vector<Gaussian<D>>& data, const std::vector<int>& label, std::size_t parts);
+
 /// Groups the Gaussians of each cell into any smaller number of clusters. One dendrogram per cell (agglomerate()) holds
 /// the groups for all numbers of clusters. partsPerCell() decides how many clusters each cell gets.
 class GAUSSMAP_API ScaleClusters {
@@ -82,6 +98,10 @@ class GAUSSMAP_API ScaleClusters {
 /// Puts all Gaussians of each cell into one cluster.
 template <int D>
 ClusterCut onePerCell(const MapScale<D>& scale);
+
+/// Returns the cut of scale s after smoothedLabels() in every cell in which it merges Gaussians.
+template <int D>
+ClusterCut smoothed(const MapScale<D>& scale, const Grid<D>& grid, int s, const ClusterCut& cut, int threads);
 
 /// Returns the area of each cluster: the sum of the areas of its Gaussians.
 std::vector<double> mergedAreas(const std::vector<double>& areas, const ClusterCut& cut);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,7 +16,7 @@
 namespace gaussmap {
 namespace {
 
-constexpr MergeCost kCosts[] = {MergeCost::Volume, MergeCost::Runnalls};
+constexpr MergeCost kCosts[] = {MergeCost::Volume, MergeCost::Runnalls, MergeCost::KL};
 
 AgglomerateOptions with(MergeCost cost) {
   AgglomerateOptions options;
@@ -46,6 +47,7 @@ Dendrogram bruteForce(const std::vector<Gaussian<D>>& data, const std::vector<do
     std::uint32_t node;
   };
   const auto costOf = [&](const Gaussian<D>& a, const Gaussian<D>& b) {
+    if (cost == MergeCost::KL) return std::min(klDivergence(a, b), klDivergence(b, a));
     const Gaussian<D> both = merge<D>({a, b});
     if (cost == MergeCost::Runnalls)
       return 0.5 * (both.weight * logDeterminant<D>(both.cov) - a.weight * logDeterminant<D>(a.cov) -
@@ -57,7 +59,7 @@ Dendrogram bruteForce(const std::vector<Gaussian<D>>& data, const std::vector<do
   std::vector<Cluster> clusters;
   for (std::size_t j = 0; j < data.size(); ++j) {
     clusters.push_back({data[j], static_cast<std::uint32_t>(j)});
-    if (cost != MergeCost::Runnalls) clusters.back().gaussian.weight = areas[j];
+    if (cost == MergeCost::Volume) clusters.back().gaussian.weight = areas[j];
   }
   Dendrogram dendrogram{data.size(), {}};
   while (clusters.size() > 1) {
@@ -114,10 +116,45 @@ TEST(Agglomerate, CostsWhatIsKnownOnPaper) {
   };
   EXPECT_NEAR(costOf(MergeCost::Volume), std::sqrt(2.0) - 2.0, 1e-14);
   EXPECT_NEAR(costOf(MergeCost::Runnalls), std::log(2.0), 1e-14);
+  EXPECT_NEAR(costOf(MergeCost::KL), 2.0, 1e-14);  // 2^2 / 2
+  // Spheres of sigma 1 and 2 at one place. From the small one to the large one: (3 ln 4 + 3 / 4 - 3) / 2. The other
+  // direction, (-3 ln 4 + 12 - 3) / 2, is larger.
+  for (const bool is_small_first : {true, false})
+    EXPECT_NEAR(agglomerate<3>({sphere<3>(0, is_small_first ? 1 : 2), sphere<3>(0, is_small_first ? 2 : 1)}, ones(2),
+                               with(MergeCost::KL))
+                    .merges[0]
+                    .cost,
+                1.5 * std::log(4.0) - 1.125, 1e-14);
   // Areas 1 and 3: mean 0.5, variance along x 1 + 1 * 3 / 16 * 4. The weights, 5 and 15, matter to Runnalls alone.
   const std::vector<Gaussian<2>> uneven = {sphere<2>(-1, 1, 5), sphere<2>(1, 1, 15)};
   EXPECT_NEAR(agglomerate<2>(uneven, {1, 3}).merges[0].cost, std::sqrt(1.75) - 2.0, 1e-14);
   EXPECT_NEAR(agglomerate<2>(uneven, {1, 1}, with(MergeCost::Runnalls)).merges[0].cost, 10.0 * std::log(1.75), 1e-13);
+}
+
+TEST(Agglomerate, WeighsUnionsByWeightsForTheDivergence) {
+  // The union of the first two has its mean at 0.9 (weights 1 : 9) and variance 1 + 0.09 * 1.
+  const std::vector<Gaussian<2>> row = {sphere<2>(0, 1, 1), sphere<2>(1, 1, 9), sphere<2>(5, 1, 1)};
+  const Dendrogram dendrogram = agglomerate<2>(row, {1, 1, 1}, with(MergeCost::KL));
+  EXPECT_NEAR(dendrogram.merges[0].cost, 0.5, 1e-14);
+  Gaussian<2> both = merge<2>({row[0], row[1]});
+  EXPECT_NEAR(both.mean.x(), 0.9, 1e-15);
+  EXPECT_NEAR(dendrogram.merges[1].cost, std::min(klDivergence(both, row[2]), klDivergence(row[2], both)), 1e-13);
+}
+
+TEST(Agglomerate, FollowsTheDivergenceForFlatAndThinGaussians) {  // condition numbers up to 4e8
+  Random random(12);
+  for (int trial = 0; trial < 40; ++trial) {
+    std::vector<Gaussian<3>> data = randomGaussians<3>(random, 12);
+    for (Gaussian<3>& gaussian : data) {
+      const Matrix<3> axes = Eigen::Quaterniond(random.normal(), random.normal(), random.normal(), random.normal())
+                                 .normalized()
+                                 .toRotationMatrix();
+      const Vector<3> deviations(10.0, trial % 2 == 0 ? 10.0 : 0.005, 0.005);
+      gaussian.cov = axes * deviations.cwiseAbs2().asDiagonal() * axes.transpose() + 1e-4 * Matrix<3>::Identity();
+    }
+    expectSameTree(agglomerate(data, ones(12), with(MergeCost::KL)), bruteForce<3>(data, ones(12), MergeCost::KL),
+                   1e-8);
+  }
 }
 
 TEST(Agglomerate, TakesLogarithmsOverTheWholeRangeOfSizes) {

@@ -36,7 +36,7 @@ void expectTheSameBits(MergeCost cost) {
 }
 
 TEST(MergeTable, GivesTheSameBitsInEveryLaneAndDirection) {
-  for (const MergeCost cost : {MergeCost::Volume, MergeCost::Runnalls}) {
+  for (const MergeCost cost : {MergeCost::Volume, MergeCost::Runnalls, MergeCost::KL}) {
     expectTheSameBits<2>(cost);
     expectTheSameBits<3>(cost);
   }

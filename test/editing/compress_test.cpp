@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -13,6 +14,7 @@
 #include "gaussmap/mapping/build.h"
 #include "gaussmap/mapping/refine.h"
 #include "io/gmap/map_equality.h"
+#include "map/inherit_occupancy.h"
 #include "map/random_clouds.h"
 #include "mapping/room.h"
 
@@ -245,6 +247,69 @@ TEST_P(CompressProperty, DoesNotDependOnThreads) {
 }
 
 INSTANTIATE_TEST_SUITE_P(RandomClouds, CompressProperty, testing::Range<std::uint64_t>(0, 6));
+
+// ---- by the error of the cells
+// ---------------------------------------------------------------------------------------
+
+TEST(CompressByCellError, ComparesEquationSix) {
+  // Two points, 0.1 m apart. Their Gaussians have the noise floor of 5 mm, and the coarse mean is 0.05 m from both:
+  // E = (0.05 / 0.005)^2 = 100.
+  const GaussianMapOctree map = build<3>({{0.05, 0.05, 0.05}, {0.15, 0.05, 0.05}}, {0.1, 10, 2, 0.0});
+  const CompressOptions paper = CompressOptions::yguel2009();
+  expectSameMap<3>(compress(map, 99.9, paper), map);
+  EXPECT_EQ(compress(map, 100.1, paper).cellCount(0), 0u);
+  EXPECT_THROW(compress(map, 0.0, paper), std::invalid_argument);
+  EXPECT_THROW(compress(map, HUGE_VAL, paper), std::invalid_argument);
+}
+
+TEST(CompressByCellError, OfThePaperMultipliesByOneMinusTheLearningRate) {  // 1 - 5e-2 for a free cell: E = 95
+  GaussianMapOctree map = build<3>({{0.05, 0.05, 0.05}, {0.15, 0.05, 0.05}}, {0.1, 10, 2, 0.0});
+  map = withOccupancy<3>(map, {-10.0f, -10.0f});
+  CompressOptions options = CompressOptions::yguel2009();
+  EXPECT_EQ(compress(map, 95.1, options).cellCount(0), 0u);
+  EXPECT_EQ(compress(map, 94.9, options).cellCount(0), 2u);
+  options.learning_factor = false;
+  EXPECT_EQ(compress(map, 95.1, options).cellCount(0), 2u);
+}
+
+/// True if eq. (6) of this cell and of all coarse cells below it is at most the limit.
+bool isGood(const GaussianMapOctree& map, std::size_t cell, int s, double limit) {
+  if (s == 0) return true;
+  const IndexRange clusters = map.gaussiansOf(cell, s), under = map.gaussiansUnder(cell, s);
+  double sum = 0.0;
+  for (std::size_t j = under.first; j < under.last; ++j) {
+    const Gaussian<3> z = map.gaussian(j, s - 1);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = clusters.first; i < clusters.last; ++i) {
+      const Vector<3> apart = map.gaussian(i, s).mean - z.mean;
+      nearest = std::min(nearest, apart.dot(z.cov.inverse() * apart));
+    }
+    sum += nearest;
+  }
+  if (sum > limit * static_cast<double>(under.size())) return false;
+  const IndexRange children = map.childCells(cell, s);
+  for (std::size_t child = children.first; child < children.last; ++child)
+    if (!isGood(map, child, s - 1, limit)) return false;
+  return true;
+}
+
+TEST(CompressByCellError, KeepsDetailExactlyWhereTheErrorIsLarge) {
+  Random random(4);
+  const GaussianMapOctree map = refine<3>(build<3>(roomPoints(random, 20000), {0.1, 4, 3, 0.0})).map;
+  std::size_t alone = 0, detailed = 0;
+  for (const double limit : {3.0, 10.0, 30.0, 100.0}) {
+    const GaussianMapOctree small = compress(map, limit, CompressOptions::yguel2009());
+    for (int s = 1; s < 3; ++s) {
+      for (std::size_t cell = 0; cell < small.cellCount(s); ++cell) {
+        const bool is_good = isGood(map, *map.find(small.scale(s).keys[cell], s), s, limit);
+        ASSERT_EQ(small.isLeaf(cell, s), is_good) << "scale " << s << ", limit " << limit;
+        ++(is_good ? alone : detailed);
+      }
+    }
+  }
+  EXPECT_GT(alone, 50u);
+  EXPECT_GT(detailed, 50u);
+}
 
 // ---- hostile input --------------------------------------------------------------------------------------------------
 

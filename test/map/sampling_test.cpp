@@ -187,6 +187,21 @@ TEST(SampleMap, GivesEveryGaussianItsMinimum) {
   EXPECT_TRUE(sampleMap(map, 0, options).points.empty());
 }
 
+TEST(SampleMap, OfThePaperSharesWithoutAMinimumAndFillsTheCell) {  // volumes 1 : 8 : 1e6
+  const GaussianMap<3> map =
+      mapOf({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}},
+            {{{0, 0, 0}, 4e-6 * kIdentity, 5}, {{0, 0, 0}, 16e-6 * kIdentity, 1}, {{0, 0, 0}, 0.04 * kIdentity, 1}});
+  SampleOptions options = SampleOptions::yguel2009();
+  options.samples = 100000;
+  EXPECT_EQ(sampleCounts<3>(map, 0, options), (std::vector<std::size_t>{0, 1, 99999}));
+  const GaussianMap<3> coarse = randomMap<3>();
+  SampleOptions in_cell;
+  in_cell.bounds = SampleBounds::Cell;
+  in_cell.at_least = 0;
+  EXPECT_TRUE(equalBytes(sampleMap(coarse, 2, SampleOptions::yguel2009()), sampleMap(coarse, 2, in_cell)));
+  EXPECT_FALSE(equalBytes(sampleMap(coarse, 2), sampleMap(coarse, 2, in_cell)));
+}
+
 TEST(SampleMap, HasTheMomentsOfAGaussianWellInsideItsCell) {
   Gaussian<3> gaussian{{0.1, -0.05, 0.02}, kIdentity, 1.0};
   gaussian.cov << 0.0025, 0.0010, 0.0, 0.0010, 0.0016, -0.0003, 0.0, -0.0003, 0.0009;  // 8 sigma to the border

@@ -19,7 +19,12 @@ enum class MergeCost {
   /// `((w_1 + w_2) ln det S_12 - w_1 ln det S_1 - w_2 ln det S_2) / 2` [nat], with w = weights. This is an upper bound
   /// of the log-likelihood that the merge loses (Runnalls 2007). With this cost, the moment match is weighted by
   /// the weights of the Gaussians. With Volume, it is weighted by the areas given to agglomerate().
-  Runnalls
+  Runnalls,
+  /// `min(KL(g_1 || g_2), KL(g_2 || g_1))` [nat], eq. (8), as in the paper, sec. 5.4. The divergence is not symmetric.
+  /// The paper takes the smallest one of all ordered pairs (Algorithm 2, line 14), so the smaller one of both
+  /// directions
+  /// counts. The moment match is weighted by the weights of the Gaussians.
+  KL
 };
 
 /// Options of agglomerate().

@@ -9,27 +9,48 @@
 
 namespace gaussmap {
 
-/// Options of compress().
-struct CompressOptions {
-  std::size_t samples = 100;  ///< number of samples per tested Gaussian, >= 1
-  std::uint64_t seed = 1;     ///< same map + same seed = bit-identical result
-  int threads = 0;            ///< 0 = all cores
+/// When compress() takes a coarse cell for good enough.
+enum class CompressBy {
+  /// Distances between the Gaussians of the cell and the finest scale.
+  Distance,
+  /// The error of the cell, Yguel 2009 eq. (6), as in the paper: the mean squared Mahalanobis distance from a Gaussian
+  /// of
+  /// the next finer scale to the nearest cluster.
+  CellError,
 };
 
-/// Deletes detail where the coarser cells are good enough, Yguel 2009 sec. 5.4.
+/// Options of compress().
+struct GAUSSMAP_API CompressOptions {
+  std::size_t samples = 100;             ///< CompressBy::Distance: number of samples per tested Gaussian, >= 1
+  std::uint64_t seed = 1;                ///< CompressBy::Distance: same map + same seed = bit-identical result
+  int threads = 0;                       ///< 0 = all cores
+  CompressBy by = CompressBy::Distance;  ///< when a cell is good enough
+  /// CompressBy::CellError: multiplies the terms of eq. (6) by 1 - eps, see RefineOptions::learning_factor.
+  bool learning_factor = false;
+
+  /// Returns the options of the paper, Yguel 2009: CompressBy::CellError with the factor 1 - eps.
+  static CompressOptions yguel2009();
+};
+
+/// Deletes detail where the coarser cells are good enough. Yguel 2009 proposes this in the abstract and in sec. 1.
 ///
 /// The function works from the coarsest scale down. If the Gaussians of a coarse cell are good enough, everything below
 /// this cell is deleted. Otherwise its children are tested. Cells that are kept do not change. If nothing can be
 /// deleted, the map is returned unchanged. In the result, the Gaussians of leaves() represent the whole map.
 ///
-/// The reference is the means of the finest Gaussians of the given map. A cell is good enough if both criteria hold:
+/// CompressBy::CellError: `max_error` has no unit, because eq. (6) is in squared standard deviations of the finer
+/// Gaussians. A cell is good enough if the error of this cell, and the error of every coarse cell below it, is at most
+/// max_error. The paper names no limit. No random numbers are used.
+///
+/// CompressBy::Distance: `max_error` is in metres. The reference is the means of the finest Gaussians of the given map.
+/// A cell is good enough if both criteria hold:
 /// - Each of its Gaussians gets `samples` samples inside the cell. At least 95 % of them lie within max_error [m] of
 ///   the nearest reference mean. This mean can be in another cell. A Gaussian for which no sample is found fails.
 /// - Every reference mean below the cell lies within max_error of the 95 % ellipsoid of one of its Gaussians. This
 ///   ellipsoid contains 95 % of the probability mass; inside it the distance is 0. An ellipsoid that is too wide passes
 ///   this criterion but fails the first one.
 ///
-/// The result therefore has two properties:
+/// The result of CompressBy::Distance therefore has two properties:
 /// - At least 95 % of the samples of each Gaussian in a coarse leaf cell lie within max_error of a reference mean. This
 ///   is exact for the samples that were tested. sampleMap() draws the same samples with `samples` = 0, `at_least` =
 ///   CompressOptions::samples, the same seed and SampleBounds::Cell. For other samples the share can differ a little.

@@ -7,10 +7,26 @@
 
 namespace gaussmap {
 
+/// From what mergeMaps() makes the coarse scales.
+enum class MergeMethod {
+  /// From the Gaussians of the next finer scale of the result. The number of clusters is fixed for all cells of a scale
+  /// that both maps have, and the cells where clusters matter most get most of them.
+  FinerScales,
+  /// From the clusters that both maps have at this scale, as in the paper. The number of clusters is fixed per cell.
+  /// Compressed maps can be merged only by this method.
+  Clusters,
+};
+
 /// Options of mergeMaps().
-struct MergeMapsOptions {
-  MergeCost merge_cost = MergeCost::Volume;  ///< which pair of clusters is merged next
-  int threads = 0;                           ///< 0 = all cores
+struct GAUSSMAP_API MergeMapsOptions {
+  MergeCost merge_cost = MergeCost::Volume;       ///< which pair of clusters is merged next
+  int threads = 0;                                ///< 0 = all cores
+  MergeMethod method = MergeMethod::FinerScales;  ///< from what the coarse scales are made
+  bool smooth = false;  ///< ends with one run of KLKMeans per cell, which starts from the merged clusters
+
+  /// Returns the options of the paper, Yguel 2009 sec. 5.4: MergeMethod::Clusters and MergeCost::KL, and then one run
+  /// of the clustering per cell.
+  static MergeMapsOptions yguel2009();
 };
 
 /// Merges two maps of the same frame into one, Yguel 2009 sec. 5.4. Merging with an empty map changes nothing.
@@ -21,16 +37,24 @@ struct MergeMapsOptions {
 /// Gaussians instead. A cell that only one map has is copied. In a cell that both maps have, agglomerate() merges the
 /// cheapest pairs of Gaussians. Let one map have p Gaussians in this cell and the other q; max(p, q) are left.
 ///
-/// Coarse scales: A cell that only one map has keeps its clusters. In the cells that both maps have, agglomerate()
-/// merges the cheapest pairs. At scale 1, the merging starts from the clusters of both maps. At coarser scales, it
-/// starts from the Gaussians of the next finer scale. The number of clusters that are left is fixed for all these cells
-/// together: it is the sum of max(p, q) over the cells. Every cluster is the exact moment match of its children.
+/// Coarse scales, MergeMethod::FinerScales: A cell that only one map has keeps its clusters. In the cells that both
+/// maps have, agglomerate() merges the cheapest pairs. At scale 1, the merging starts from the clusters of both maps.
+/// At coarser scales, it starts from the Gaussians of the next finer scale. The number of clusters that are left is
+/// fixed for all these cells together: it is the sum of max(p, q) over the cells.
 ///
-/// The method of the paper differs from this function in three points. The paper fixes the number of clusters per cell,
-/// starts from the clusters at every scale, and ends with a run of KLKMeans. Both methods were measured by merging two
-/// halves of a drive. The error is the 95 % quantile of the distances from samples of the result to the points; it is
-/// compared with the error of a map of all points. With the method of the paper, the error is 9 % larger at scale 1 and
-/// 22 % larger at scale 2. With this function, it is 1 % smaller at scale 1 and 1 % larger at scale 2.
+/// Coarse scales, MergeMethod::Clusters: In a cell that both maps have, the pair of clusters with the smallest cost is
+/// replaced by its moment match, again and again, until max(p, q) clusters are left. No other scale is used. If a
+/// coarse cell is a leaf of one of the maps (see compress()), it becomes a leaf of the result.
+///
+/// With MergeMapsOptions::smooth, the old clusters of the cell are then assigned to the merged clusters again, by one
+/// run of KLKMeans. The run can drop clusters.
+///
+/// Every cluster is the exact moment match of its children. With MergeMethod::Clusters, the children of merged clusters
+/// become children of the union. If a merged finer cluster has old parents in two unions, it joins the union with the
+/// larger part of its weight. The moment match is computed again afterwards, and a union without children is removed.
+///
+/// Two halves of a drive were merged by both methods. docs/notes/merging.md gives the errors: those of
+/// MergeMapsOptions::yguel2009() are larger than those of the default, which are those of a map of all points.
 ///
 /// Occupancy: In a finest cell that both maps have, the log-odds are added and limited to +-kMaxOccupancy. If only one
 /// map has occupancy, its log-odds are used, and the cells that exist only in the map without occupancy get
@@ -39,7 +63,8 @@ struct MergeMapsOptions {
 /// mergeMaps(a, b) and mergeMaps(b, a) have a bit-identical finest scale.
 ///
 /// Throws std::invalid_argument if the options of the maps differ (the message names the option), if a map is
-/// compressed, or if a cell would hold 2^33 points or more. transformMap() resamples a map into another grid.
+/// compressed (MergeMethod::FinerScales only), or if a cell would hold 2^33 points or more. transformMap() resamples a
+/// map into another grid.
 template <int D>
 GAUSSMAP_API GaussianMap<D> mergeMaps(const GaussianMap<D>& a, const GaussianMap<D>& b,
                                       const MergeMapsOptions& options = {});

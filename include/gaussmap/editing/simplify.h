@@ -9,9 +9,13 @@
 namespace gaussmap {
 
 /// Options of simplify().
-struct SimplifyOptions {
+struct GAUSSMAP_API SimplifyOptions {
   MergeCost merge_cost = MergeCost::Volume;  ///< which pair of clusters is merged next
   int threads = 0;                           ///< 0 = all cores
+  bool smooth = false;  ///< ends with one run of KLKMeans per cell, which starts from the merged clusters
+
+  /// Returns the options of the paper, Yguel 2009 sec. 5.4: MergeCost::KL, and then one run of the clustering.
+  static SimplifyOptions yguel2009();
 };
 
 /// Reduces the number of Gaussians of a map to a budget, Yguel 2009 sec. 5.4.
@@ -21,6 +25,9 @@ struct SimplifyOptions {
 /// moments hold one and do not change. Compressed maps, final maps and maps of one scale are accepted. The children of
 /// merged clusters become children of the union. Coarse clusters thus stay the moment matches of their children. Every
 /// cell keeps at least one Gaussian.
+///
+/// With SimplifyOptions::smooth, the clusters that a cell had before are then assigned to the merged clusters again, by
+/// one run of KLKMeans. The run can drop clusters, so fewer than the budget can be left.
 ///
 /// With MaxError, samples are drawn from the scale and from the leaves of the given map. The error is the 95 % quantile
 /// of the distances from a sample of the scale to the nearest sample of the leaves. Per scale, a bisection finds the

@@ -30,13 +30,17 @@ enum class SampleBounds {
 };
 
 /// Options of sampleMap(), sampleLeaves() and sampleCounts().
-struct SampleOptions {
+struct GAUSSMAP_API SampleOptions {
   std::size_t samples = 100000;  ///< total number, divided according to `share`; `at_least` can increase the total
   std::size_t at_least = 30;     ///< minimum number of samples per Gaussian
   SampleShare share = SampleShare::Volume;          ///< how many samples each Gaussian gets
   std::uint64_t seed = 1;                           ///< same map + same seed = bit-identical samples
   int threads = 0;                                  ///< 0 = all cores
   SampleBounds bounds = SampleBounds::MemberCells;  ///< where samples may lie
+
+  /// Returns the options of the paper, Yguel 2009 sec. 6: The number of samples is proportional to the volume of the
+  /// ellipsoid, without a minimum, and samples outside the cell of the Gaussian are rejected.
+  static SampleOptions yguel2009();
 };
 
 /// Samples of a map, in the order of their Gaussians. Each array has one entry per sample.

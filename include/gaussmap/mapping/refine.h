@@ -117,6 +117,12 @@ struct GAUSSMAP_API RefineOptions {
   int max_swaps = 20;  ///< maximum number of rounds of the swap loop per inserted cluster (see insertCluster()), >= 0
   ClusterSeed seed_rule = ClusterSeed::ParentCovariance;  ///< how a new cluster starts
   std::uint64_t seed = 0;                                 ///< same map + same seed = bit-identical result
+  /// Adds clusters only to cells whose finer Gaussians have a mean probability of occupancy above 0.5, Yguel 2009 sec.
+  /// 5.1. The probability is 1 / (1 + exp(-log-odds)). Has no effect on maps without occupancy.
+  bool only_occupied = false;
+  /// Multiplies the terms of eq. (6) by 1 - eps, as in the paper, where eps is the learning rate of a finer Gaussian,
+  /// eq. (5). The rate follows from its log-odds. Has no effect on maps without occupancy.
+  bool learning_factor = false;
   // Both:
   int threads = 0;  ///< 0 = all cores
 
@@ -124,10 +130,11 @@ struct GAUSSMAP_API RefineOptions {
   ///
   /// The method is RefineMethod::Insert (sec. 5.2). In each round, the p = 4 cells of largest error, eq. (6), get one
   /// more cluster. Each new cluster starts as a copy of the Gaussian of largest distortion, with its own covariance
-  /// (Algorithm 2, lines 5, 18 and 21). The default method is RefineMethod::Agglomerate, because it gives better maps.
-  /// If RefineMethod::Insert is selected, two more defaults differ from the paper. More cells are refined at a time,
-  /// which keeps all threads busy. A new cluster starts with the covariance of the cluster that the Gaussian of largest
-  /// distortion belonged to.
+  /// (Algorithm 2, lines 5, 18 and 21). If the map has occupancy, cells that are probably free get no more clusters
+  /// (sec. 5.1), and eq. (6) has the factor 1 - eps. The default method is RefineMethod::Agglomerate, because it gives
+  /// better maps. If RefineMethod::Insert is selected, three more defaults differ from the paper. More cells are
+  /// refined at a time, which keeps all threads busy. A new cluster starts with the covariance of the cluster that the
+  /// Gaussian of largest distortion belonged to. Occupancy is not used.
   static RefineOptions yguel2009();
 };
 
@@ -146,7 +153,8 @@ struct GAUSSMAP_API RefineOptions {
 /// RefineMethod::Insert, Yguel 2009 sec. 5: the p cells of largest error, eq. (6), get one more cluster each (see
 /// insertCluster(), Algorithm 2) and return to the queue with their new error. This repeats until the budget is used.
 /// A cell leaves the queue if it has one cluster per finer Gaussian, if its error is 0, or if the insertion yields no
-/// additional cluster. The budget is then not fully used.
+/// additional cluster. With RefineOptions::only_occupied, free cells do not enter the queue. If the queue becomes
+/// empty, the budget is not fully used.
 ///
 /// Every cluster is the moment match of its children, weighted by numbers of points. The total weight of a scale thus
 /// stays the number of points.

@@ -54,6 +54,7 @@ std::string withDetails(const HistoryJson& own, const std::string& details) {
 }
 
 HistoryJson wordOf(MergeCost cost) {
+  if (cost == MergeCost::KL) return "kl";
   return cost == MergeCost::Runnalls ? HistoryJson("runnalls") : HistoryJson();
 }
 
@@ -69,6 +70,8 @@ std::string refineStep(const Budget& budget, const RefineOptions& options, const
     if (options.queue != usual.queue) own["queue"] = options.queue;
     if (options.max_swaps != usual.max_swaps) own["max_swaps"] = options.max_swaps;
     if (options.seed_rule == ClusterSeed::InputGaussian) own["seed_rule"] = "datum";
+    if (options.only_occupied) own["only_occupied"] = true;
+    if (options.learning_factor) own["learning_factor"] = true;
   }
   return withDetails(own, details);
 }
@@ -76,6 +79,7 @@ std::string refineStep(const Budget& budget, const RefineOptions& options, const
 std::string simplifyStep(const Budget& budget, const SimplifyOptions& options, const std::string& details) {
   HistoryJson own = {{"cost", wordOf(options.merge_cost)}};
   std::visit(BudgetWriter{own}, budget);
+  if (options.smooth) own["smooth"] = true;
   return withDetails(own, details);
 }
 

@@ -33,12 +33,14 @@ TEST(MapHistory, TellsTheMethodAndTheBudgetOfARefinement) {
   EXPECT_EQ(refineStep(maxFileBytes(9000000)), R"({"method":"agglomerate","max_bytes":9000000})");
   EXPECT_EQ(refineStep(MaxError{0.25, {}}), R"({"method":"agglomerate","max_error":0.25})");
   EXPECT_EQ(refineStep(PerCell{}, RefineOptions::yguel2009()),
-            R"({"method":"insert","budget":3.0,"seed":0,"queue":4,"seed_rule":"datum"})");
+            R"({"method":"insert","budget":3.0,"seed":0,"queue":4,"seed_rule":"datum","only_occupied":true,)"
+            R"("learning_factor":true})");
 }
 
 TEST(MapHistory, TellsTheBudgetOfASimplification) {
   EXPECT_EQ(simplifyStep(PerCell{2.0}), R"({"budget":2.0})");
   EXPECT_EQ(simplifyStep(MaxError{0.5, {}}, {MergeCost::Runnalls, 0}), R"({"cost":"runnalls","max_error":0.5})");
+  EXPECT_EQ(simplifyStep(PerCell{2.0}, SimplifyOptions::yguel2009()), R"({"cost":"kl","budget":2.0,"smooth":true})");
 }
 
 TEST(MapHistory, TakesDetailsThatReplaceItsOwn) {
