@@ -27,6 +27,8 @@ constexpr double kAway = 15.0;                                  // the observer 
 const Vector<2> kWindow(7.0, 8.0);                              // Figs. 4 and 5 [m]
 const Vector<2> kOutside(1e5, 1e5);                             // an observer that sees no segment [m]
 
+constexpr double kDefaultThreshold = 0.06, kNoiseThreshold = 0.028;  // sigma_th [m]
+
 SegmentFitterOptions optionsOf(LealMethod method, double min_length, std::uint64_t seed) {
   SegmentFitterOptions options;
   if (method == LealMethod::AsPrinted) options = SegmentFitterOptions::leal2000();
@@ -36,16 +38,17 @@ SegmentFitterOptions optionsOf(LealMethod method, double min_length, std::uint64
   return options;
 }
 
-ViewpointInvariantOptions invariantOptions(double min_length) {
+ViewpointInvariantOptions invariantOptions(double min_length, double threshold = kDefaultThreshold) {
   ViewpointInvariantOptions options;
   options.min_length = min_length;
+  options.sigma_threshold = threshold;
   return options;
 }
 
 /// Returns the utility of the paper; none for LealMethod::Default.
-std::shared_ptr<SegmentUtility> invariant(LealMethod method, double min_length) {
+std::shared_ptr<SegmentUtility> invariant(LealMethod method, double min_length, double threshold = kDefaultThreshold) {
   if (method == LealMethod::Default) return {};
-  return std::make_shared<ViewpointInvariantUtility>(invariantOptions(min_length));
+  return std::make_shared<ViewpointInvariantUtility>(invariantOptions(min_length, threshold));
 }
 
 ViewpointDependentOptions dependentOptions(double min_length, double scale) {
@@ -66,9 +69,9 @@ double varianceOf(const SegmentMap& map) {
 }
 
 /// Adds all scans to a map and measures it.
-LealMeasure measure(const LealData& data, LealMethod method, double min_length, std::uint64_t seed) {
+LealMeasure measure(const LealData& data, LealMethod method, double threshold, double min_length, std::uint64_t seed) {
   LealMeasure result;
-  SegmentFitter fitter(optionsOf(method, min_length, seed), invariant(method, min_length));
+  SegmentFitter fitter(optionsOf(method, min_length, seed), invariant(method, min_length, threshold));
   SegmentStatistics last;
   for (const LaserScan& scan : data.scans) {
     last = fitter.add(scan);
@@ -152,18 +155,17 @@ LealObserverRow::Detail meanOf(const std::vector<LealObserverRow::Detail>& detai
 
 LealObserverRow walk(const LealData& data, LealMethod method) {
   const ViewpointDependentOptions view = dependentOptions(kObserverLength, kObserverScale);
-  // During the scans the observer is outside the map: the map is that of eq. (4), Fig. 9 (a).
-  const auto utility = std::make_shared<ViewpointDependentUtility>(view);
-  SegmentFitter fitter(optionsOf(method, kObserverLength, 1), utility),
-      before(optionsOf(method, kObserverLength, 1), invariant(method, kObserverLength));
+  SegmentFitter fitter(optionsOf(method, kObserverLength, 1), std::make_shared<ViewpointDependentUtility>(view)),
+      invariant_fitter(optionsOf(method, kObserverLength, 1), invariant(method, kObserverLength));
   for (const LaserScan& scan : data.scans) {
     fitter.add(scan);
-    before.add(scan);
+    invariant_fitter.add(scan);
   }
   fitter.observe(kOutside);
-  const SegmentMap coarse = before.map();
+  const SegmentMap coarse = fitter.map();  // Fig. 9 (a)
   LealObserverRow row;
   row.method = method;
+  row.total_invariant = static_cast<double>(invariant_fitter.map().segments.size());
   row.total_before = static_cast<double>(coarse.segments.size());
   std::vector<LealObserverRow::Detail> at_first, there, after, unvisited;
   std::vector<Vector<2>> visited;
@@ -288,16 +290,21 @@ LealData logOf(const std::filesystem::path& folder, const std::string& name) {
 
 std::vector<LealStudyRow> lealStudy(const LealData& data, int seeds) {
   std::vector<LealStudyRow> rows;
-  for (const LealMethod method : {LealMethod::AsPrinted, LealMethod::Moments})
+  const std::pair<LealMethod, double> methods[] = {{LealMethod::AsPrinted, kDefaultThreshold},
+                                                   {LealMethod::AsPrinted, kNoiseThreshold},
+                                                   {LealMethod::Moments, kDefaultThreshold},
+                                                   {LealMethod::Moments, kNoiseThreshold}};
+  for (const auto& [method, threshold] : methods)
     for (const double min_length : {0.3, 0.5, 0.7, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0}) {
       std::vector<LealMeasure> runs;
       const int count = method == LealMethod::AsPrinted ? seeds : 1;
       for (int seed = 1; seed <= count; ++seed)
-        runs.push_back(measure(data, method, min_length, static_cast<std::uint64_t>(seed)));
-      rows.push_back({method, min_length, meanOf(runs)});
+        runs.push_back(measure(data, method, threshold, min_length, static_cast<std::uint64_t>(seed)));
+      rows.push_back({method, min_length, meanOf(runs), threshold});
     }
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  rows.push_back({LealMethod::Default, kNone, measure(data, LealMethod::Default, 1.0, 1)});
+  constexpr double kNotUsed = std::numeric_limits<double>::quiet_NaN();
+  rows.push_back(
+      {LealMethod::Default, kNotUsed, measure(data, LealMethod::Default, kDefaultThreshold, 1.0, 1), kNotUsed});
   return rows;
 }
 

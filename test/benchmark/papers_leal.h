@@ -59,9 +59,11 @@ struct LealStudyRow {
   LealMethod method = LealMethod::AsPrinted;
   double min_length = 0.0;  ///< l_min [m]; NaN for LealMethod::Default
   LealMeasure map;
+  double sigma_threshold = 0.0;  ///< sigma_th [m]; NaN for LealMethod::Default
 };
-/// Returns the rows of AsPrinted and Moments for l_min = 0.3, 0.5, 0.7, 1, 1.25, 1.5, 2, 2.5, 3 m, then one of Default.
-/// `seeds`: runs of AsPrinted with different particles.
+/// Returns the rows of AsPrinted and Moments for sigma_th = 6 cm (the default of the library) and 2.8 cm (the noise of
+/// the particles of simulated scans), each for l_min = 0.3, 0.5, 0.7, 1, 1.25, 1.5, 2, 2.5, 3 m, then one row of
+/// Default. The paper does not give sigma_th. `seeds`: runs of AsPrinted with different particles.
 std::vector<LealStudyRow> lealStudy(const LealData& data, int seeds);
 
 /// Figs. 4 and 5: a part of 7 m x 8 m, l_min = 1.5 m, a = 0.53, viewpoint-invariant and viewpoint-dependent.
@@ -78,23 +80,24 @@ struct LealExampleRow {
 std::vector<LealExampleRow> lealExample(const LealData& data);
 
 /// Fig. 9: l_min = 3 m, a = 0.33. After the scans, an observer walks through the finished map. The segments within 5 m
-/// of each position of the path are counted: in the map of eq. (4), while the observer is there, and when it is at
-/// least 15 m away.
+/// of each position of the path are counted: without an observer in the map, while the observer is there, and when it
+/// is at least 15 m away.
 struct LealObserverRow {
   LealMethod method = LealMethod::AsPrinted;  ///< AsPrinted or Moments
   std::size_t places = 0;                     ///< positions of the path
   std::size_t left = 0;                       ///< positions from which the observer got 15 m away
-  // Mean number of segments near a place, their number per metre, and their mean normal variance [m^2].
+  /// Mean number of segments near a place, their number per metre, and their mean normal variance [m^2].
   struct Detail {
     double segments = 0.0, per_metre = 0.0, normal_variance = 0.0;
   };
-  Detail before;     ///< the map of eq. (4), all places
+  Detail before;     ///< no observer, all places
   Detail there;      ///< the observer is at the place, all places
   Detail after;      ///< the observer has left the place, places that were left only
-  Detail unvisited;  ///< the map of eq. (4) at the places that were left, to compare with `after`
-  /// Mean number of segments outside the field: of the map of eq. (4), and of the map with the observer.
+  Detail unvisited;  ///< no observer, the places that were left only; to compare with `after`
+  /// Mean number of segments outside the field: without an observer, and with the observer at the places of the path.
   double elsewhere_before = 0.0, elsewhere = 0.0;
-  double total_before = 0.0, total_after = 0.0;  ///< segments of the whole map: of eq. (4), and after the observer left
+  /// Segments of the whole map: of eq. (4), of eq. (5) before an observer was in the map, and after it left.
+  double total_invariant = 0.0, total_before = 0.0, total_after = 0.0;
 };
 /// Returns one row for AsPrinted and one for Moments.
 std::vector<LealObserverRow> lealObserver(const LealData& data);

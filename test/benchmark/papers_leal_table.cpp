@@ -13,15 +13,19 @@ double centimetres(double variance) {
 
 void printStudy(const LealData& data, int seeds) {
   std::printf(
-      "| %s, Figs. 7 and 8 | l_min [m] | normal deviation [cm] | segments | splits | merges | length [m] | cov5 | "
+      "| %s, Figs. 7 and 8 | sigma_th [cm] | l_min [m] | normal deviation [cm] | segments | splits | merges | length "
+      "[m] | cov5 | "
       "cov10 | "
       "rms [cm] | r10 | viol | recall | precision | offset [mm] |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
       data.name.c_str());
   for (const LealStudyRow& row : lealStudy(data, seeds)) {
     const LealMeasure& map = row.map;
     std::printf("| %s | ", nameOf(row.method).c_str());
-    std::printf(std::isnan(row.min_length) ? "-" : "%.2f", row.min_length);
+    if (std::isnan(row.min_length))
+      std::printf("- | -");
+    else
+      std::printf("%.1f | %.2f", 100.0 * row.sigma_threshold, row.min_length);
     std::printf(" | %.2f | %.0f | %.0f | %.0f | %.1f | %.3f | %.3f | %.2f | %.3f | %.3f | ",
                 centimetres(map.normal_variance), map.segments, map.splits, map.merges, map.length, map.within_5cm,
                 map.within_10cm, 100.0 * map.rms, map.predicted_10cm, map.blocked_early);
@@ -51,7 +55,8 @@ void printExample(const LealData& data) {
 void printObserver(const LealData& data) {
   std::printf(
       "| %s, Fig. 9: l_min 3 m, a .33; segments within 5 m of a place | without observer | observer there | observer "
-      "15 m away | the same places without observer | elsewhere without / with observer | all before / after |\n"
+      "15 m away | the same places without observer | elsewhere without / with observer | all: eq. (4) / before / "
+      "after |\n"
       "|---|---|---|---|---|---|---|\n",
       data.name.c_str());
   const auto cell = [](const LealObserverRow::Detail& detail) {
@@ -60,8 +65,8 @@ void printObserver(const LealData& data) {
   for (const LealObserverRow& row : lealObserver(data)) {
     std::printf("| %s, %zu places, %zu left |", nameOf(row.method).c_str(), row.places, row.left);
     for (const LealObserverRow::Detail& detail : {row.before, row.there, row.after, row.unvisited}) cell(detail);
-    std::printf(" %.1f / %.1f | %.0f / %.0f |\n", row.elsewhere_before, row.elsewhere, row.total_before,
-                row.total_after);
+    std::printf(" %.1f / %.1f | %.0f / %.0f / %.0f |\n", row.elsewhere_before, row.elsewhere, row.total_invariant,
+                row.total_before, row.total_after);
   }
   std::printf("\n");
 }
