@@ -181,9 +181,8 @@ void addSegments(CLI::App& app) {
       .rare();
   command
       .text("--observation", options->observation,
-            R"(draw only this observation, SCAN:BEAM, both counted from 0: as a Gaussian and as particles,
-            before and after the projection into the plane (the paper's Figs. 1 and 2))")
-      .type("SCAN:BEAM")
+            "draw only this observation, SCAN:BEAM, both counted from 0: as a Gaussian and as particles, before and "
+            "after the projection into the plane (the paper's Figs. 1 and 2)")
       .rare();
   command.number("--every", options->every, 1, 1000000, "use only every N-th scan, starting with the first one");
   command.text("--stats", options->stats, "CSV file to write: what each scan changed");

@@ -51,9 +51,9 @@ std::shared_ptr<SegmentUtility> invariant(LealMethod method, double min_length, 
   return std::make_shared<ViewpointInvariantUtility>(invariantOptions(min_length, threshold));
 }
 
-ViewpointDependentOptions dependentOptions(double min_length, double scale) {
+ViewpointDependentOptions dependentOptions(double threshold, double min_length, double scale) {
   ViewpointDependentOptions options;
-  options.far = invariantOptions(min_length);
+  options.far = invariantOptions(min_length, threshold);
   options.scale = scale;
   return options;
 }
@@ -93,6 +93,8 @@ LealMeasure measure(const LealData& data, LealMethod method, double threshold, d
   const WallScore walls = scoreWalls(map, data.walls);
   result.recall = walls.recall;
   result.precision = walls.precision;
+  for (const Segment& wall : data.walls) result.true_length += wall.length();
+  if (walls.matched == 0) return result;  // all walls are too short
   result.offset_rms = walls.offset_rms;
   result.angle_rms = walls.angle_rms;
   return result;
@@ -109,7 +111,7 @@ LealMeasure meanOf(const std::vector<LealMeasure>& runs) {
        {&LealMeasure::segments, &LealMeasure::splits, &LealMeasure::merges, &LealMeasure::normal_variance,
         &LealMeasure::length, &LealMeasure::within_5cm, &LealMeasure::within_10cm, &LealMeasure::rms,
         &LealMeasure::predicted_10cm, &LealMeasure::blocked_early, &LealMeasure::recall, &LealMeasure::precision,
-        &LealMeasure::offset_rms, &LealMeasure::angle_rms})
+        &LealMeasure::offset_rms, &LealMeasure::angle_rms, &LealMeasure::true_length})
     average(member);
   return mean;
 }
@@ -153,10 +155,10 @@ LealObserverRow::Detail meanOf(const std::vector<LealObserverRow::Detail>& detai
   return mean;
 }
 
-LealObserverRow walk(const LealData& data, LealMethod method) {
-  const ViewpointDependentOptions view = dependentOptions(kObserverLength, kObserverScale);
+LealObserverRow walk(const LealData& data, LealMethod method, double threshold) {
+  const ViewpointDependentOptions view = dependentOptions(threshold, kObserverLength, kObserverScale);
   SegmentFitter fitter(optionsOf(method, kObserverLength, 1), std::make_shared<ViewpointDependentUtility>(view)),
-      invariant_fitter(optionsOf(method, kObserverLength, 1), invariant(method, kObserverLength));
+      invariant_fitter(optionsOf(method, kObserverLength, 1), invariant(method, kObserverLength, threshold));
   for (const LaserScan& scan : data.scans) {
     fitter.add(scan);
     invariant_fitter.add(scan);
@@ -165,6 +167,7 @@ LealObserverRow walk(const LealData& data, LealMethod method) {
   const SegmentMap coarse = fitter.map();  // Fig. 9 (a)
   LealObserverRow row;
   row.method = method;
+  row.sigma_threshold = threshold;
   row.total_invariant = static_cast<double>(invariant_fitter.map().segments.size());
   row.total_before = static_cast<double>(coarse.segments.size());
   std::vector<LealObserverRow::Detail> at_first, there, after, unvisited;
@@ -268,12 +271,12 @@ LealData roughHall(std::uint64_t seed) {
   Random random(seed);
   for (int i = 0; i < kHallScans; ++i) {
     const double turn = kFullTurn * i / kHallScans, heading = turn + 0.5 * kFullTurn;
-    const Pose2 pose{{15.0 * std::cos(turn), 6.0 * std::sin(turn)}, heading};
+    const Pose2 pose{{18.0 * std::cos(turn), 8.5 * std::sin(turn)}, heading};
     data.test.push_back(rayCast(data.walls, pose, 0.0, random));
     data.scans.push_back(rayCast(data.walls, pose, kPlanNoise, random));
   }
   data.path = pathOf(data.scans);
-  data.window = windowAround({18.0, 0.0});
+  data.window = windowAround({20.5, 0.0});
   return data;
 }
 
@@ -310,37 +313,41 @@ std::vector<LealStudyRow> lealStudy(const LealData& data, int seeds) {
 
 std::vector<LealExampleRow> lealExample(const LealData& data) {
   std::vector<LealExampleRow> rows;
-  for (const LealMethod method : {LealMethod::AsPrinted, LealMethod::Moments, LealMethod::Default})
-    for (const bool dependent : {false, true}) {
-      if (dependent && method == LealMethod::Default) continue;
-      std::shared_ptr<SegmentUtility> utility = invariant(method, kExampleLength);
-      if (dependent) {
-        ViewpointDependentOptions view = dependentOptions(kExampleLength, kExampleScale);
-        view.viewpoint = 0.5 * (data.window.low + data.window.high);
-        view.fixed = true;
-        utility = std::make_shared<ViewpointDependentUtility>(view);
-      }
-      SegmentFitter fitter(optionsOf(method, kExampleLength, 1), utility);
-      for (const LaserScan& scan : data.scans) fitter.add(scan);
-      LealExampleRow row;
-      row.method = method;
-      row.dependent = dependent;
-      row.map = fitter.map();
-      row.evidence = fitter.evidence();
-      for (const Segment& segment : row.map.segments) {
-        if (!isInBox<2>(data.window, 0.5 * (segment.start + segment.end))) continue;
-        ++row.segments;
-        row.length += segment.length();
-        row.normal_variance += segment.length() * segment.normal_variance;
-      }
-      if (row.length > 0.0) row.normal_variance /= row.length;
-      rows.push_back(std::move(row));
+  const auto add = [&](LealMethod method, double threshold, bool dependent, std::shared_ptr<SegmentUtility> utility) {
+    SegmentFitter fitter(optionsOf(method, kExampleLength, 1), std::move(utility));
+    for (const LaserScan& scan : data.scans) fitter.add(scan);
+    LealExampleRow row;
+    row.method = method;
+    row.sigma_threshold = threshold;
+    row.dependent = dependent;
+    row.map = fitter.map();
+    row.evidence = fitter.evidence();
+    for (const Segment& segment : row.map.segments) {
+      if (!isInBox<2>(data.window, 0.5 * (segment.start + segment.end))) continue;
+      ++row.segments;
+      row.length += segment.length();
+      row.normal_variance += segment.length() * segment.normal_variance;
     }
+    if (row.length > 0.0) row.normal_variance /= row.length;
+    rows.push_back(std::move(row));
+  };
+  for (const LealMethod method : {LealMethod::AsPrinted, LealMethod::Moments})
+    for (const double threshold : {kDefaultThreshold, kNoiseThreshold}) {
+      add(method, threshold, false, invariant(method, kExampleLength, threshold));
+      ViewpointDependentOptions view = dependentOptions(threshold, kExampleLength, kExampleScale);
+      view.viewpoint = 0.5 * (data.window.low + data.window.high);
+      view.fixed = true;
+      add(method, threshold, true, std::make_shared<ViewpointDependentUtility>(view));
+    }
+  add(LealMethod::Default, std::numeric_limits<double>::quiet_NaN(), false, {});
   return rows;
 }
 
 std::vector<LealObserverRow> lealObserver(const LealData& data) {
-  return {walk(data, LealMethod::AsPrinted), walk(data, LealMethod::Moments)};
+  std::vector<LealObserverRow> rows;
+  for (const LealMethod method : {LealMethod::AsPrinted, LealMethod::Moments})
+    for (const double threshold : {kDefaultThreshold, kNoiseThreshold}) rows.push_back(walk(data, method, threshold));
+  return rows;
 }
 
 }  // namespace gaussmap::benchmark

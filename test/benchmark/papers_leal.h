@@ -50,8 +50,9 @@ struct LealMeasure {
   double length = 0.0;                                ///< total length of the segments [m]
   // Scans that are not in the map, see HoldOutScore.
   double within_5cm = 0.0, within_10cm = 0.0, rms = 0.0, predicted_10cm = 0.0, blocked_early = 0.0;
-  // True walls within 5 cm, see WallScore: shares, [m], [rad]. NaN without walls.
+  // True walls within 5 cm, see WallScore: shares, [m], [rad]. NaN without walls, or if all walls are too short.
   double recall = std::numeric_limits<double>::quiet_NaN(), precision = recall, offset_rms = recall, angle_rms = recall;
+  double true_length = 0.0;  ///< length of the true walls [m]; a longer map is a zigzag that follows the noise
 };
 
 /// Figs. 7 and 8: the effect of l_min.
@@ -75,8 +76,9 @@ struct LealExampleRow {
   double normal_variance = 0.0;     ///< mean sigma_n^2 of these segments, by length [m^2]
   SegmentMap map;                   ///< of the whole place
   std::vector<Vector<2>> evidence;  ///< of the whole place [m]
+  double sigma_threshold = 0.0;     ///< sigma_th [m]; NaN for LealMethod::Default
 };
-/// Returns two rows each for AsPrinted and Moments, and one for Default.
+/// Returns four rows each for AsPrinted and Moments (both values of sigma_th, both utilities), and one for Default.
 std::vector<LealExampleRow> lealExample(const LealData& data);
 
 /// Fig. 9: l_min = 3 m, a = 0.33. After the scans, an observer walks through the finished map. The segments within 5 m
@@ -98,8 +100,9 @@ struct LealObserverRow {
   double elsewhere_before = 0.0, elsewhere = 0.0;
   /// Segments of the whole map: of eq. (4), of eq. (5) before an observer was in the map, and after it left.
   double total_invariant = 0.0, total_before = 0.0, total_after = 0.0;
+  double sigma_threshold = 0.0;  ///< sigma_th [m]
 };
-/// Returns one row for AsPrinted and one for Moments.
+/// Returns two rows each for AsPrinted and Moments, for both values of sigma_th.
 std::vector<LealObserverRow> lealObserver(const LealData& data);
 
 /// Prints the tables of these experiments in Markdown.

@@ -86,9 +86,10 @@ void addFitterOptions(Command& command, FitterInput& input) {
                           "viewpoint-dependent: more detail this near to the sensor [m]; default: 5"),
            command.number("--view-scale", input.view_scale, 1e-3, 1.0,
                           "viewpoint-dependent: factor of --l-min in that area; default: 0.33"),
-           command.text("--observer-path", input.observer_path,
-                        R"(viewpoint-dependent: after the scans, an observer walks along these positions
-                        (file with x y per line, or poses); the map has more detail near it)"),
+           command.text(
+               "--observer-path", input.observer_path,
+               "viewpoint-dependent: after the scans, an observer walks along these positions (file with x y per line, "
+               "or poses); the map has more detail near it"),
            command.number("--range-noise", options.noise.range, 0.0, 100.0,
                           "standard deviation of the laser's ranges [m]"),
            command.number("--bearing-noise", options.noise.bearing, 0.0, 1.0,
@@ -99,9 +100,10 @@ void addFitterOptions(Command& command, FitterInput& input) {
            command.choiceOf("--particle-limit", options.particles.limit, kLimits,
                             R"(where surplus particles are removed: in bins of 0.25 m with too many (bins),
                             or anywhere in the segment, as in the paper (segment))"),
-           command.choiceOf("--association", options.association, kAssociations,
-                            R"(segment of an observation: nearest with a fitting surface (surface),
-                            or nearest whose polygon contains the mean of the samples, as in the paper (polygon))"),
+           command.choiceOf(
+               "--association", options.association, kAssociations,
+               "segment of an observation: nearest with a fitting surface (surface), or nearest whose polygon contains "
+               "the mean of the samples, as in the paper (polygon)"),
            command.choiceOf("--merge-candidates", options.merge_candidates, kCandidates,
                             "segments that can be merged: near ones, or only linked ones, as in the paper"),
            command.choiceOf("--holes", options.split_holes, kHoles,

@@ -84,9 +84,9 @@ struct ViewpointDependentOptions {
 /// segments that meet the field around the observer.
 ///
 /// After the observer has left, the splits near its place are undone. The text of the paper says this, but its equation
-/// does not. This class merges two segments outside the field if together they are shorter than l_min.
-/// Splits as short as this happen only inside the field. Two such segments therefore come from a time when the observer
-/// was near.
+/// does not. This class merges two segments outside the field if together they are shorter than l_min. Most of them
+/// come from splits when the observer was near. Short segments that were created so are merged too, so outside the
+/// field the map can be coarser than that of eq. (4).
 class GAUSSMAP_API ViewpointDependentUtility : public SegmentUtility {
  public:
   /// Stores the options. Throws std::invalid_argument if an option is out of range; the message names the option.
