@@ -9,6 +9,7 @@
 
 #include "commands/commands.h"
 #include "commands/segments/segment_report.h"
+#include "common/box.h"
 #include "common/command.h"
 #include "common/json.h"
 #include "common/report.h"
@@ -29,7 +30,8 @@ or to write it in another format.)"};
 
 /// Throws UsageError for outputs that cannot be written or would destroy an input file.
 void checkFiles(const SegmentsCommand& command, std::vector<std::filesystem::path> inputs) {
-  for (const std::string& file : {command.input.scans.poses, command.evaluate, command.walls})
+  for (const std::string& file :
+       {command.input.scans.poses, command.evaluate, command.walls, command.fitter.observer_path})
     if (!file.empty()) inputs.emplace_back(file);
   std::vector<std::string> outputs = command.outputs;
   outputs.push_back(command.stats);
@@ -42,10 +44,16 @@ void checkFinished(const Command& given, const SegmentsCommand& command) {
   std::string option = givenFitterOption(given);
   if (!command.stats.empty()) option = "--stats";
   if (command.evidence) option = "--evidence";
+  if (command.evidence_beside) option = "--evidence-beside";
   if (command.every > 1) option = "--every";
   if (!option.empty())
     throw UsageError(option + ": only for scans, but " + command.input.scans.paths[0] +
                      " is a finished map of segments");
+}
+
+std::optional<Box<2>> windowOf(const SegmentsCommand& command) {
+  if (command.box.empty()) return {};
+  return mapBoxOf<2>("--box", command.box);
 }
 
 /// Reads a finished map, or fits a map to scans.
@@ -56,13 +64,17 @@ FittedSegments mapOf(const Command& given, const SegmentsCommand& command) {
     checkFinished(given, command);
     FittedSegments finished;
     finished.map = loadSegmentsPcd(paths[0]);
+    finished.picture.window = windowOf(command);
     return finished;
   }
   fitterOptions(command.fitter);  // throws for wrong options before the scans are read
   makeUtility(command.fitter);
   const LaserScans input = readLaserScans(command.input);
   checkFiles(command, input.files);
-  return fitSegments(command, input);
+  FittedSegments fitted = fitSegments(command, input);
+  fitted.picture.window = windowOf(command);
+  fitted.picture.beside = command.evidence_beside;
+  return fitted;
 }
 
 void printMap(const SegmentsCommand& command, const FittedSegments& fitted) {
@@ -74,6 +86,9 @@ void printMap(const SegmentsCommand& command, const FittedSegments& fitted) {
     std::cout << "; " << fitted.scans << " scans, " << fitted.beams << " beams, "
               << formatted("%.0f beams/s, ", static_cast<double>(fitted.beams) / std::max(fitted.seconds, 1e-9))
               << humanBytes(fitted.memory);
+  if (!fitted.picture.path.empty())
+    std::cout << "; observer: " << fitted.picture.path.size() << " positions, " << fitted.observer_splits << " splits, "
+              << fitted.observer_merges << " merges";
   std::cout << '\n';
 }
 
@@ -91,10 +106,35 @@ Json mapJson(const SegmentsCommand& command, const FittedSegments& fitted) {
                      {"pruned", fitted.pruned},
                      {"memory", fitted.memory},
                      {"seconds", fitted.seconds}});
+  if (command.fitter.as_in_paper) json["as_in_paper"] = true;
+  if (!fitted.picture.path.empty())
+    json["observer"] = {{"positions", fitted.picture.path.size()},
+                        {"splits", fitted.observer_splits},
+                        {"merges", fitted.observer_merges}};
   return json;
 }
 
+/// Draws one observation, without a map.
+void runObservation(const SegmentsCommand& command) {
+  std::string option;
+  if (!command.stats.empty()) option = "--stats";
+  if (!command.evaluate.empty()) option = "--evaluate";
+  if (!command.walls.empty()) option = "--walls";
+  if (!command.box.empty()) option = "--box";
+  if (command.evidence) option = "--evidence";
+  if (command.evidence_beside) option = "--evidence-beside";
+  if (!option.empty()) throw UsageError(option + ": not with --observation, which makes no map");
+  if (command.outputs.empty()) throw UsageError("--observation: give -o FILE.svg");
+  for (const std::string& output : command.outputs) requireExtension(output, ".svg");
+  fitterOptions(command.fitter);
+  checkFiles(command, {command.input.scans.paths.begin(), command.input.scans.paths.end()});
+  const LaserScans input = readLaserScans(command.input);
+  checkFiles(command, input.files);
+  drawOneObservation(command, input);
+}
+
 void run(const Command& given, const SegmentsCommand& command) {
+  if (!command.observation.empty()) return runObservation(command);
   if (command.outputs.empty() && command.stats.empty() && command.evaluate.empty() && command.walls.empty())
     throw UsageError("nothing to do: give -o FILE, --stats FILE, --evaluate LOG or --walls FILE");
   for (const std::string& output : command.outputs) checkSegmentsName(output);
@@ -132,6 +172,18 @@ void addSegments(CLI::App& app) {
   command.texts("-o,--output", options->outputs, "map to write: .pcd, .svg, .geojson or .csv; repeatable").onePerUse();
   command.force(options->force, "replace existing outputs");
   command.flag("--evidence", options->evidence, "draw the evidence of the segments into the .svg");
+  command
+      .flag("--evidence-beside", options->evidence_beside,
+            "draw the evidence beside the segments, not under them (the paper's Fig. 6)")
+      .rare();
+  command.numbers("--box", options->box, 4, -1e9, 1e9, "draw only the part from x0 y0 to x1 y1 [m]")
+      .type("X0 Y0 X1 Y1")
+      .rare();
+  command
+      .text("--observation", options->observation,
+            "draw only this observation, SCAN:BEAM, both counted from 0: as a Gaussian and as particles, before and "
+            "after the projection into the plane (the paper's Figs. 1 and 2)")
+      .rare();
   command.number("--every", options->every, 1, 1000000, "use only every N-th scan, starting with the first one");
   command.text("--stats", options->stats, "CSV file to write: what each scan changed");
   command.text("--evaluate", options->evaluate,

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "gaussmap/map/grid.h"
 #include "gaussmap/segments/segment_map.h"
 
 namespace gaussmap::app {
@@ -18,6 +19,9 @@ struct SegmentPicture {
     double radius = 0.0;
   };
   std::optional<Field> field;
+  std::vector<Vector<2>> path;   ///< positions of an observer [m], map frame
+  std::optional<Box<2>> window;  ///< the part to draw [m], map frame; std::nullopt: everything
+  bool beside = false;           ///< true: the evidence is drawn beside the segments, false: under them
 };
 
 /// Writes an SVG picture with a scale bar. Each chain has one colour; its segments are drawn with their end points and

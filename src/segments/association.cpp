@@ -33,12 +33,31 @@ int segmentOfHit(const Vector<2>& hit, const Vector<2>& sensor, const Vector<2>&
   return best;
 }
 
+/// Returns the number of the nearest segment whose polygon contains the point, or kNone.
+int segmentAround(const Vector<2>& point, const SegmentStore& store) {
+  int best = kNone;
+  double least = std::numeric_limits<double>::infinity();
+  for (const int id : store.near(point)) {
+    const double distance = store[id].squaredDistance(point);
+    if (distance >= least || !store.polygon(store[id]).contains(point)) continue;
+    least = distance;
+    best = id;
+  }
+  return best;
+}
+
 }  // namespace
 
-std::vector<int> associate(const ScanBeams& beams, const std::vector<BeamRun>& runs, const SegmentStore& store,
+std::vector<int> associate(const ScanBeams& beams, const std::vector<BeamRun>& runs,
+                           const EvidenceCollector& observations, const SegmentStore& store,
                            const SegmentFitterOptions& options) {
-  const std::vector<Vector<2>> pieces = straightPieces(runs, beams.hits, 3.0 * std::max(options.noise.range, 0.01));
   std::vector<int> owners(beams.hits.size(), kNone);
+  if (options.association == SegmentAssociation::Polygon) {
+    for (const BeamRun& run : runs)
+      for (std::size_t i = run.first; i < run.last; ++i) owners[i] = segmentAround(observations.mean(i), store);
+    return owners;
+  }
+  const std::vector<Vector<2>> pieces = straightPieces(runs, beams.hits, 3.0 * std::max(options.noise.range, 0.01));
   for (const BeamRun& run : runs)
     for (std::size_t i = run.first; i < run.last; ++i)
       owners[i] = segmentOfHit(beams.hits[i], beams.sensor(), pieces[i], store, options.min_half_width);

@@ -29,8 +29,9 @@ std::size_t firstHole(const CellRow& row, double gap) {
   return 0;
 }
 
-/// Returns the candidates for a merge: the neighbours in the chain, and nearby segments of similar direction.
-std::vector<int> mergePartners(int id, double gap, const SegmentStore& store) {
+/// Returns the candidates for a merge, see MergeCandidates.
+std::vector<int> mergePartners(int id, const SegmentFitterOptions& options, const SegmentStore& store) {
+  const double gap = options.gap;
   const LiveSegment& segment = store[id];
   std::vector<int> partners;
   // Excludes the two faces of a thin wall: they can be linked around its end, but have opposite directions.
@@ -41,6 +42,7 @@ std::vector<int> mergePartners(int id, double gap, const SegmentStore& store) {
   if (segment.next != kNone) linked(segment.next, segment.finish(), store[segment.next].start());
   if (segment.previous != kNone && segment.previous != segment.next)
     linked(segment.previous, segment.start(), store[segment.previous].finish());
+  if (options.merge_candidates == MergeCandidates::Linked) return partners;
   for (const Vector<2>& place : {segment.start(), segment.line.center, segment.finish()})
     for (const int other : store.near(place)) {
       const LiveSegment& near = store[other];
@@ -54,7 +56,10 @@ std::vector<int> mergePartners(int id, double gap, const SegmentStore& store) {
 
 }  // namespace
 
-DecisionCounts decide(const std::vector<int>& touched, const SegmentVotes& votes, double gap, SegmentStore& store) {
+DecisionCounts decide(const std::vector<int>& touched, const SegmentVotes& votes, const SegmentFitterOptions& options,
+                      SegmentStore& store) {
+  const bool evidence_grows =
+      options.policy == EvidencePolicy::MomentCells || options.particles.limit == ParticleLimit::Bins;
   DecisionCounts counts;
   std::deque<int> open(touched.begin(), touched.end());
   const std::size_t most = kMaxDecisions * (touched.size() + 1);
@@ -64,11 +69,12 @@ DecisionCounts decide(const std::vector<int>& touched, const SegmentVotes& votes
     LiveSegment& segment = store[id];
     const CellRow& row = segment.evidence.row;
     if (!segment.alive) continue;
-    if (segment.total.n < kGrown * segment.decided_at && row.cells().size() == segment.decided_cells) continue;
+    if (evidence_grows && segment.total.n < kGrown * segment.decided_at && row.cells().size() == segment.decided_cells)
+      continue;
     segment.decided_at = segment.total.n;
     segment.decided_cells = row.cells().size();
 
-    if (const std::size_t hole = firstHole(row, gap)) {
+    if (const std::size_t hole = options.split_holes ? firstHole(row, options.gap) : 0) {
       open.push_back(store.split(id, hole, false));
       open.push_back(id);
       continue;
@@ -89,7 +95,7 @@ DecisionCounts decide(const std::vector<int>& touched, const SegmentVotes& votes
         }
       }
     }
-    for (const int other : mergePartners(id, gap, store)) {
+    for (const int other : mergePartners(id, options, store)) {
       const double vote = votes.merge(goals, store[other].goals(), goalsTogether(segment, store[other]));
       if (vote > highest) {
         highest = vote;

@@ -15,8 +15,10 @@ struct DecisionCounts {
 };
 
 /// Decides for each of these segments, and for those that result, whether to split it, merge it or do nothing. The
-/// highest utility wins, Leal 2000 eq. [3]. A segment with a hole longer than `gap` [m] is always split there. A
-/// segment whose evidence has hardly grown since its last decision is skipped.
-DecisionCounts decide(const std::vector<int>& touched, const SegmentVotes& votes, double gap, SegmentStore& store);
+/// highest utility wins, Leal 2000 eq. [3]. With SegmentFitterOptions::split_holes, a segment with a long hole is
+/// always split there. A segment whose evidence has hardly grown since its last decision is skipped. With
+/// ParticleLimit::Segment no segment is skipped, because particles are exchanged without growth.
+DecisionCounts decide(const std::vector<int>& touched, const SegmentVotes& votes, const SegmentFitterOptions& options,
+                      SegmentStore& store);
 
 }  // namespace gaussmap::detail

@@ -27,10 +27,13 @@ struct SegmentEvidence {
 class EvidenceKeeper {
  public:
   virtual ~EvidenceKeeper() = default;
-  virtual void add(const std::vector<ObservationPoint>& observation, SegmentEvidence& evidence) const = 0;
-  /// Call it after all observations of a scan. Drops the evidence beyond the limit for a segment of this length [m].
-  /// `number` must be different for every call; it seeds the random choice.
-  virtual void settle(double length, std::uint64_t number, SegmentEvidence& evidence) const = 0;
+  /// Adds an observation to a segment of this length [m]. `number` is the number of the observation; it seeds the
+  /// random choice of the particles that make room for it.
+  virtual void add(const std::vector<ObservationPoint>& observation, double length, std::uint64_t number,
+                   SegmentEvidence& evidence) const = 0;
+  /// Call it after all observations of a scan. Drops the evidence beyond a limit that holds for parts of a segment, and
+  /// computes the row. `number` must be different for every call; it seeds the random choice.
+  virtual void settle(std::uint64_t number, SegmentEvidence& evidence) const = 0;
 };
 
 std::unique_ptr<EvidenceKeeper> makeEvidenceKeeper(const SegmentFitterOptions& options);

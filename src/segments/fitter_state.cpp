@@ -17,13 +17,14 @@ constexpr int kPruneEvery = 10;   // scans
 
 SegmentStatistics SegmentFitterState::add(const LaserScan& original) {
   if (scans == 0) votes.setOrigin(original.pose.translation.array().round().matrix());
-  votes.observe(original.pose.translation);
   const ScanBeams beams(original, votes.origin(), observations);
+  collector.observe(beams);  // may throw, so nothing is changed before
+  votes.observe(original.pose.translation);
   SegmentStatistics statistics;
 
   // Associates beams with the existing segments. The other beams become new segments.
   const std::vector<BeamRun> runs = findRuns(beams, options.gap);
-  std::vector<int> owners = associate(beams, runs, store, options), touched;
+  std::vector<int> owners = associate(beams, runs, collector, store, options), touched;
   for (const BeamRun& run : runs) {
     statistics.beams += run.last - run.first;
     for (std::size_t i = run.first; i < run.last; ++i) {
@@ -50,15 +51,7 @@ SegmentStatistics SegmentFitterState::add(const LaserScan& original) {
   }
   linkNeighbours(runs, owners);
 
-  for (int id = 0; id < static_cast<int>(store.segments().size()); ++id) {
-    LiveSegment& segment = store[id];
-    if (!segment.alive || !votes.reconsider(segment)) continue;
-    segment.decided_at = 0.0;
-    touched.push_back(id);
-  }
-  const DecisionCounts decisions = decide(touched, votes, options.gap, store);
-  statistics.splits = decisions.splits;
-  statistics.merges = decisions.merges;
+  vote(std::move(touched), statistics);
   if (options.prune) {
     countCrossings(beams, 1.0, store.segments());
     if (scans % kPruneEvery == kPruneEvery - 1) statistics.pruned = store.prune();
@@ -66,8 +59,29 @@ SegmentStatistics SegmentFitterState::add(const LaserScan& original) {
   views.add(beams.scan);
   ++scans;
   observations += beams.hits.size();
-  describe(beams, statistics);
+  describe(statistics);
+  statistics.coverage = coverage(beams);
   return statistics;
+}
+
+SegmentStatistics SegmentFitterState::observe(const Vector<2>& position) {
+  SegmentStatistics statistics;
+  votes.observe(position);
+  vote({}, statistics);
+  describe(statistics);
+  return statistics;
+}
+
+void SegmentFitterState::vote(std::vector<int> touched, SegmentStatistics& statistics) {
+  for (int id = 0; id < static_cast<int>(store.segments().size()); ++id) {
+    LiveSegment& segment = store[id];
+    if (!segment.alive || !votes.reconsider(segment)) continue;
+    segment.decided_at = 0.0;
+    touched.push_back(id);
+  }
+  const DecisionCounts decisions = decide(touched, votes, options, store);
+  statistics.splits = decisions.splits;
+  statistics.merges = decisions.merges;
 }
 
 void SegmentFitterState::linkNeighbours(const std::vector<BeamRun>& runs, const std::vector<int>& owners) {
@@ -79,7 +93,7 @@ void SegmentFitterState::linkNeighbours(const std::vector<BeamRun>& runs, const 
     }
 }
 
-void SegmentFitterState::describe(const ScanBeams& beams, SegmentStatistics& statistics) const {
+void SegmentFitterState::describe(SegmentStatistics& statistics) const {
   double weight = 0.0;
   for (const LiveSegment& segment : store.segments())
     if (segment.alive) {
@@ -88,14 +102,18 @@ void SegmentFitterState::describe(const ScanBeams& beams, SegmentStatistics& sta
       statistics.normal_variance += segment.total.n * segment.line.across;
     }
   if (weight > 0.0) statistics.normal_variance /= weight;
-  std::size_t covered = 0;
+}
+
+double SegmentFitterState::coverage(const ScanBeams& beams) const {
+  std::size_t covered = 0, returned = 0;
   for (std::size_t i = 0; i < beams.hits.size(); ++i) {
     if (!beams.scan.returned(i)) continue;
+    ++returned;
     const std::vector<int>& near = store.near(beams.hits[i]);
     covered += std::any_of(near.begin(), near.end(),
                            [&](int id) { return store[id].squaredDistance(beams.hits[i]) <= kCovered * kCovered; });
   }
-  if (statistics.beams > 0) statistics.coverage = static_cast<double>(covered) / static_cast<double>(statistics.beams);
+  return returned > 0 ? static_cast<double>(covered) / static_cast<double>(returned) : 0.0;
 }
 
 }  // namespace gaussmap::detail

@@ -18,13 +18,19 @@ namespace gaussmap::detail {
 
 /// The state of a SegmentFitter, and the steps of its add() in their order.
 struct SegmentFitterState {
-  SegmentFitterState(const SegmentFitterOptions& given, std::shared_ptr<SegmentUtility> utility)
-      : options(given), votes(std::move(utility)), collector(given), store(given) {}
+  SegmentFitterState(const SegmentFitterOptions& given, std::shared_ptr<SegmentUtility> utility,
+                     std::shared_ptr<const ObservationModel> model)
+      : options(given), votes(std::move(utility)), collector(given, std::move(model)), store(given) {}
 
   SegmentStatistics add(const LaserScan& scan);
+  SegmentStatistics observe(const Vector<2>& position);
   /// Links two segments if neighbouring beams end on them and their ends are near each other.
   void linkNeighbours(const std::vector<BeamRun>& runs, const std::vector<int>& owners);
-  void describe(const ScanBeams& beams, SegmentStatistics& statistics) const;
+  /// Decides on the touched segments, and on those that the utility wants to reconsider.
+  void vote(std::vector<int> touched, SegmentStatistics& statistics);
+  void describe(SegmentStatistics& statistics) const;
+  /// Returns the share of the beams that end near a segment.
+  double coverage(const ScanBeams& beams) const;
 
   SegmentFitterOptions options;
   SegmentVotes votes;  ///< its origin is the first sensor position in whole metres; all sums are relative to it

@@ -61,6 +61,8 @@ void NewSegments::createFrom(const ScanBeams& beams, std::size_t first, std::siz
   const int id = store_.create();
   LiveSegment& segment = store_[id];
   segment.line = whole.line;
+  segment.begin = whole.begin;
+  segment.end = whole.end;
   segment.evidence.row = CellRow(whole.line.center, whole.line.direction, cell_);
   created.push_back(id);
   for (std::size_t i = first; i < last; ++i) {

@@ -98,7 +98,7 @@ void touchWalls(const std::vector<bool>& free_start, const std::vector<bool>& fr
 
 }  // namespace
 
-SegmentMap outputMap(const std::deque<LiveSegment>& live, const Vector<2>& origin) {
+SegmentMap outputMap(const std::deque<LiveSegment>& live, const Vector<2>& origin, bool adjust_ends) {
   SegmentMap map;
   std::vector<bool> done(live.size(), false);
   std::vector<bool> free_start, free_end;
@@ -107,7 +107,7 @@ SegmentMap outputMap(const std::deque<LiveSegment>& live, const Vector<2>& origi
     chain.first = map.segments.size();
     for (int id = from; id != kNone && !done[id]; id = live[id].next) {
       done[id] = true;
-      map.segments.push_back(toSegment(withoutEnds(live[id]), origin));
+      map.segments.push_back(toSegment(adjust_ends ? withoutEnds(live[id]) : live[id], origin));
     }
     free_start.resize(map.segments.size(), true);
     free_end.resize(map.segments.size(), true);
@@ -124,7 +124,7 @@ SegmentMap outputMap(const std::deque<LiveSegment>& live, const Vector<2>& origi
     if (live[id].alive && live[id].previous == kNone) walk(id, false);
   for (int id = 0; id < static_cast<int>(live.size()); ++id)  // the remaining chains are closed
     if (live[id].alive && !done[id]) walk(id, true);
-  touchWalls(free_start, free_end, map.segments);
+  if (adjust_ends) touchWalls(free_start, free_end, map.segments);
   return map;
 }
 

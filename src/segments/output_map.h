@@ -9,6 +9,7 @@
 namespace gaussmap::detail {
 
 /// Returns the segments in the map frame, chain by chain. Linked neighbours are joined where their lines meet.
-SegmentMap outputMap(const std::deque<LiveSegment>& segments, const Vector<2>& origin);
+/// `adjust_ends`: see SegmentFitterOptions.
+SegmentMap outputMap(const std::deque<LiveSegment>& segments, const Vector<2>& origin, bool adjust_ends);
 
 }  // namespace gaussmap::detail

@@ -60,16 +60,24 @@ void check(const LaserScan& scan) {
 SegmentFitterOptions SegmentFitterOptions::leal2000() {
   SegmentFitterOptions options;
   options.policy = EvidencePolicy::ParticleSets;
+  options.particles.samples = 30;
+  options.particles.per_metre = 300.0;
   options.particles.limit = ParticleLimit::Segment;
+  options.min_length = 1.0;
+  options.association = SegmentAssociation::Polygon;
+  options.merge_candidates = MergeCandidates::Linked;
+  options.split_holes = false;
+  options.adjust_ends = false;
   options.prune = false;
   options.optimise = false;
   return options;
 }
 
-SegmentFitter::SegmentFitter(const SegmentFitterOptions& options, std::shared_ptr<SegmentUtility> utility) {
+SegmentFitter::SegmentFitter(const SegmentFitterOptions& options, std::shared_ptr<SegmentUtility> utility,
+                             std::shared_ptr<const ObservationModel> observation_model) {
   check(options);
   if (!utility) utility = std::make_shared<DescriptionLengthUtility>();
-  state_ = std::make_unique<SegmentFitterState>(options, std::move(utility));
+  state_ = std::make_unique<SegmentFitterState>(options, std::move(utility), std::move(observation_model));
 }
 
 SegmentFitter::~SegmentFitter() = default;
@@ -81,11 +89,16 @@ SegmentStatistics SegmentFitter::add(const LaserScan& scan) {
   return state_->add(scan);
 }
 
+SegmentStatistics SegmentFitter::observe(const Vector<2>& position) {
+  if (!position.allFinite()) throw std::invalid_argument("position of the observer: not finite");
+  return state_->observe(position);
+}
+
 SegmentMap SegmentFitter::map() const {
   const std::deque<LiveSegment>& segments = state_->store.segments();
   const bool optimised = state_->options.optimise && state_->votes.utility().optimisable();
   return outputMap(optimised ? optimiseSegments(segments, state_->views, state_->options) : segments,
-                   state_->votes.origin());
+                   state_->votes.origin(), state_->options.adjust_ends);
 }
 
 std::vector<Vector<2>> SegmentFitter::evidence() const {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// gaussmap_benchmark segments [--data DIR] [--seeds 3]: compares maps of line segments with common methods, and repeats
-// the study of Leal, Scheding, Dissanayake 2000. DIR has the directories carmen_intel and carmen_csail with one log
-// each. Without DIR only the simulated plan is scanned. Prints tables in Markdown. One thread.
+// gaussmap_benchmark segments [--data DIR] [--seeds 3] [--study]: compares maps of line segments with common methods,
+// and repeats the study of Leal, Scheding, Dissanayake 2000. DIR has the directories carmen_intel and carmen_csail with
+// one log each. Without DIR only the simulated plan is scanned. Prints tables in Markdown. One thread.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -12,6 +12,7 @@
 #include "evaluation/segment_score.h"
 #include "evaluation/wall_score.h"
 #include "gaussmap/segments/segment_fitter.h"
+#include "papers_leal.h"
 #include "segment_baselines.h"
 #include "segment_data.h"
 #include "subcommands.h"
@@ -148,107 +149,6 @@ void speed(const char* name, const Scans& scans, Table& table) {
   std::printf("| iterative end-point fit | | %.2f | 1 | |\n\n", rate(baseline));
 }
 
-/// Figs. 7 and 8 of the paper: the effect of l_min, with the utility of the paper.
-void study(const char* name, const Scans& scans, int seeds) {
-  std::printf(
-      "| %s: l_min [m] | policy | normal deviation [cm] | segments | splits | merges | coverage "
-      "|\n|---|---|---|---|---|---|---|\n",
-      name);
-  for (const EvidencePolicy kind : {EvidencePolicy::MomentCells, EvidencePolicy::ParticleSets}) {
-    const bool random = kind == EvidencePolicy::ParticleSets;
-    for (const double min_length : {0.5, 0.75, 1.0, 1.5, 2.0, 2.5, 3.0}) {
-      double variance = 0, segments = 0, splits = 0, merges = 0, coverage = 0;
-      const int runs = random ? seeds : 1;
-      for (int seed = 1; seed <= runs; ++seed) {
-        SegmentFitterOptions options = policy(kind, static_cast<std::uint64_t>(seed));
-        options.min_length = min_length;
-        options.optimise = false;
-        ViewpointInvariantOptions utility;
-        utility.min_length = min_length;
-        SegmentFitter fitter(options, std::make_shared<ViewpointInvariantUtility>(utility));
-        SegmentStatistics last;
-        double covered = 0, beams = 0;
-        for (const LaserScan& scan : scans) {
-          last = fitter.add(scan);
-          splits += static_cast<double>(last.splits);
-          merges += static_cast<double>(last.merges);
-          covered += last.coverage * static_cast<double>(last.beams);
-          beams += static_cast<double>(last.beams);
-        }
-        variance += last.normal_variance;
-        segments += static_cast<double>(last.segments);
-        coverage += covered / beams;
-      }
-      std::printf("| %.2f | %s | %.2f | %.0f | %.0f | %.0f | %.3f |\n", min_length, random ? "particles" : "moments",
-                  100.0 * std::sqrt(variance / runs), segments / runs, splits / runs, merges / runs, coverage / runs);
-      std::fflush(stdout);
-    }
-  }
-  std::printf("\n");
-}
-
-/// The level of detail of a map around a place.
-struct Detail {
-  double per_metre = 0.0;  // segments per metre of length
-  double variance = 0.0;   // mean of their normal variances, by length [m^2]
-
-  void add(const SegmentMap& map, const Vector<2>& place, double radius) {
-    double count = 0.0, length = 0.0, sum = 0.0;
-    for (const Segment& segment : map.segments) {
-      if (segment.distance(place) > radius) continue;
-      ++count;
-      length += segment.length();
-      sum += segment.length() * segment.normal_variance;
-    }
-    if (length == 0.0) return;
-    per_metre += count / length;
-    variance += sum / length;
-  }
-};
-
-/// Eq. (5) of the paper: more detail around the sensor, and less detail behind it.
-void viewpoint(const char* name, const Scans& scans) {
-  constexpr std::size_t kEvery = 50;  // scans between two places
-  ViewpointDependentOptions dependent;
-  dependent.far.min_length = 3.0;
-  const double radius = dependent.radius, away = 3.0 * radius;
-  SegmentFitterOptions options;
-  options.optimise = false;
-  SegmentFitter near(options, std::make_shared<ViewpointDependentUtility>(dependent));
-  SegmentFitter far(options, std::make_shared<ViewpointInvariantUtility>(dependent.far));
-  std::vector<Vector<2>> ahead;  // places that the sensor has not left yet
-  Detail there[2], behind[2];
-  double visited = 0.0, left = 0.0;
-  for (std::size_t i = 0; i < scans.size(); ++i) {
-    near.add(scans[i]);
-    far.add(scans[i]);
-    const Vector<2> here = scans[i].pose.translation;
-    const auto isLeft = [&](const Vector<2>& place) { return (place - here).norm() > away; };
-    const bool is_visit = i % kEvery == kEvery - 1;
-    if (!is_visit && std::none_of(ahead.begin(), ahead.end(), isLeft)) continue;
-    const SegmentMap maps[] = {near.map(), far.map()};
-    for (const Vector<2>& place : ahead) {
-      if (!isLeft(place)) continue;
-      ++left;
-      for (int m = 0; m < 2; ++m) behind[m].add(maps[m], place, radius);
-    }
-    ahead.erase(std::remove_if(ahead.begin(), ahead.end(), isLeft), ahead.end());
-    if (!is_visit) continue;
-    ahead.push_back(here);
-    ++visited;
-    for (int m = 0; m < 2; ++m) there[m].add(maps[m], here, radius);
-  }
-  std::printf(
-      "| %s, l_min 3 m: within %.0f m of a place | segments per metre, sensor there | %.0f m away | normal deviation "
-      "[cm], sensor there | %.0f m away |\n|---|---|---|---|---|\n",
-      name, radius, away, away);
-  for (int m = 0; m < 2; ++m)
-    std::printf("| viewpoint-%s | %.3f | %.3f | %.2f | %.2f |\n", m == 0 ? "dependent" : "invariant",
-                there[m].per_metre / visited, behind[m].per_metre / left,
-                100.0 * std::sqrt(there[m].variance / visited), 100.0 * std::sqrt(behind[m].variance / left));
-  std::printf("\n");
-}
-
 void run(const std::string& data, int seeds, bool only_speed, Table& table) {
   if (data.empty()) speed("floor plan", scanPlan(0.01, 0.0, 1), table);
   if (only_speed && data.empty()) return;
@@ -256,14 +156,18 @@ void run(const std::string& data, int seeds, bool only_speed, Table& table) {
   for (const double noise : {0.0, kPositionNoise}) plan(noise, seeds);
   if (data.empty()) return;
   const Scans intel = readLogIn(std::filesystem::path(data) / "carmen_intel");
-  const Scans csail = readLogIn(std::filesystem::path(data) / "carmen_csail");
   std::printf("carmen_intel\n\n");
   holdOut(intel);
   speed("Intel lab", intel, table);
-  study("carmen_intel", intel, seeds);
-  study("carmen_csail", csail, seeds);
-  viewpoint("carmen_intel", intel);
-  viewpoint("carmen_csail", csail);
+  printLeal(logOf(std::filesystem::path(data) / "carmen_intel", "carmen_intel"), seeds);
+  printLeal(logOf(std::filesystem::path(data) / "carmen_csail", "carmen_csail"), seeds);
+}
+
+/// Only the experiments of the paper: on simulated scans, and on the Intel lab if there are data.
+void runStudy(const std::string& data, int seeds) {
+  printLeal(simulatedPlan(), seeds);
+  printLeal(roughHall(), seeds);
+  if (!data.empty()) printLeal(logOf(std::filesystem::path(data) / "carmen_intel", "Intel lab"), seeds);
 }
 
 }  // namespace
@@ -272,7 +176,7 @@ void addSegments(CLI::App& app) {
   struct Given {
     std::string data, json;
     int seeds = 3;
-    bool only_speed = false;
+    bool only_speed = false, study = false;
   };
   const auto given = std::make_shared<Given>();
   CLI::App& command = *app.add_subcommand("segments", "maps of line segments: accuracy, speed, and the paper's study");
@@ -280,8 +184,10 @@ void addSegments(CLI::App& app) {
       ->check(CLI::ExistingDirectory);
   command.add_option("--seeds", given->seeds, "of the simulated noise and of particles")->check(CLI::Range(1, 1000));
   command.add_flag("--only-speed", given->only_speed, "only the speed, in beams per second");
+  command.add_flag("--study", given->study, "only the experiments of the paper");
   command.add_option("--json", given->json, "write the speed for machines");
   command.callback([given] {
+    if (given->study) return runStudy(given->data, given->seeds);
     Table table;
     run(given->data, given->seeds, given->only_speed, table);
     if (!given->json.empty()) writeJson(given->json, table);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "pcl/scan_cloud.h"
 
@@ -64,6 +65,38 @@ TEST(PointCloudSegmentFitter, MakesTheMapOfTheCore) {
   }
   ASSERT_GT(core.map().segments.size(), 5u);
   expectSameMap(mapThroughPcl<pcl::PointXYZ>(scans), core.map());
+}
+
+TEST(PointCloudSegmentFitter, TakesTheUtilityTheSensorModelAndTheObserverOfTheUser) {
+  // A sensor without noise, a utility that splits near the observer only.
+  struct Exact : ObservationModel {
+    void observe(const LaserScan& scan, std::size_t beam, std::uint64_t,
+                 std::vector<ObservationPoint>& points) const override {
+      points = {{scan.hit(beam), 1.0}};
+    }
+  };
+  struct Near : UserUtility {
+    Vector<2> observer{1e6, 0.0};
+    bool free = false;  // true: the sensor does not move the observer
+    double split(const SegmentGoals& whole, const SegmentGoals&, const SegmentGoals&) const override {
+      return (0.5 * (whole.start + whole.end) - observer).norm() < 6.0 ? whole.length : 0.0;
+    }
+    double nothing(const SegmentGoals&) const override { return 1.0; }
+    void observe(const Vector<2>& position) override {
+      if (free) observer = position;
+    }
+    bool reconsider(const Vector<2>&, const Vector<2>&) const override { return free; }
+  };
+  const auto utility = std::make_shared<Near>();
+  PointCloudSegmentFitter<pcl::PointXYZ> fitter({}, utility, std::make_shared<Exact>());
+  const SimulatedScan scan = planScans(1).front();
+  fitter.setInputCloud(cloudOf<pcl::PointXYZ>(scan));
+  const std::size_t before = fitter.fit().segments;
+  for (const Segment& segment : fitter.map().segments) EXPECT_TRUE(std::isfinite(segment.normal_variance));
+  utility->free = true;
+  const SegmentStatistics step = fitter.observe(scan.pose.translation.head<2>());
+  EXPECT_GT(step.splits, 0u);
+  EXPECT_EQ(step.segments, before + step.splits);
 }
 
 TEST(PointCloudSegmentFitter, TakesAnyPointType) {

@@ -19,6 +19,7 @@ Memory lookAtOneHalf(const SegmentFitterOptions& options) {
   SegmentEvidence evidence;
   evidence.row = CellRow({0.0, 0.0}, {1.0, 0.0}, 0.1);
   Random random(1);
+  std::uint64_t number = 0;
   const auto see = [&](double from) {
     for (double x = from; x < 4.0; x += 0.05) {
       std::vector<ObservationPoint> points;
@@ -27,12 +28,12 @@ Memory lookAtOneHalf(const SegmentFitterOptions& options) {
         const double across = 0.02 * random.normal(), along = x + 0.02 * random.normal();
         points.push_back({Vector<2>(along, across), 1.0 / options.particles.samples});
       }
-      keeper->add(points, evidence);
+      keeper->add(points, 4.0, number++, evidence);
     }
   };
   for (std::uint64_t scan = 0; scan <= 50; ++scan) {
     see(scan == 0 ? 0.0 : 2.0);
-    keeper->settle(4.0, scan, evidence);
+    keeper->settle(scan, evidence);
   }
   Memory memory;
   memory.particles = evidence.particles.size();

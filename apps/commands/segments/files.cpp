@@ -18,7 +18,7 @@ void writeSegments(const std::string& path, const FittedSegments& fitted) {
   if (extension == ".pcd") return saveSegmentsPcd(path, fitted.map);
   if (extension == ".geojson") return saveSegmentsGeoJson(path, fitted.map);
   if (extension == ".csv") return saveSegmentsCsv(path, fitted.map);
-  drawSegments(fitted.map, {fitted.evidence, fitted.field}, path);
+  drawSegments(fitted.map, fitted.picture, path);
 }
 
 }  // namespace gaussmap::app

@@ -32,6 +32,8 @@ std::optional<SegmentPicture::Field> fieldOf(const FitterInput& fitting, const V
 
 FittedSegments fitSegments(const SegmentsCommand& command, const LaserScans& input) {
   SegmentFitter fitter(fitterOptions(command.fitter), makeUtility(command.fitter));
+  const std::vector<Vector<2>> path =
+      command.fitter.observer_path.empty() ? std::vector<Vector<2>>() : readObserverPath(command.fitter.observer_path);
   std::ostringstream table;
   table.imbue(std::locale::classic());
   table << "scan,file,beams,associated,created,splits,merges,pruned,segments,normal_variance,coverage\n";
@@ -54,13 +56,24 @@ FittedSegments fitSegments(const SegmentsCommand& command, const LaserScans& inp
   }
   if (fitted.beams == 0)
     throw FileError(input.files.front(), "no beam of the scans has a return, so there is nothing to map");
+  const std::string path_name = std::filesystem::path(command.fitter.observer_path).filename().string();
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const SegmentStatistics step = fitter.observe(path[i]);
+    observer = path[i];
+    addStatistics(table, input.scans.size() + i, path_name + ":" + std::to_string(i), step);
+    fitted.observer_splits += step.splits;
+    fitted.observer_merges += step.merges;
+    fitted.last.segments = step.segments;
+    fitted.last.normal_variance = step.normal_variance;
+  }
   fitted.map = fitter.map();
   fitted.seconds = now() - start;
   fitted.scans = fitter.scans();
   fitted.memory = fitter.memoryBytes();
   fitted.statistics = table.str();
-  if (command.evidence) fitted.evidence = fitter.evidence();
-  fitted.field = fieldOf(command.fitter, observer);
+  if (command.evidence || command.evidence_beside) fitted.picture.evidence = fitter.evidence();
+  fitted.picture.field = fieldOf(command.fitter, observer);
+  fitted.picture.path = path;
   return fitted;
 }
 

@@ -11,6 +11,12 @@ namespace {
 const std::string kGroup = "Fitting";
 const std::map<std::string, EvidencePolicy> kPolicies = {{"moments", EvidencePolicy::MomentCells},
                                                          {"particles", EvidencePolicy::ParticleSets}};
+const std::map<std::string, SegmentAssociation> kAssociations = {{"surface", SegmentAssociation::Surface},
+                                                                 {"polygon", SegmentAssociation::Polygon}};
+const std::map<std::string, MergeCandidates> kCandidates = {{"near", MergeCandidates::Near},
+                                                            {"linked", MergeCandidates::Linked}};
+const std::map<std::string, bool> kHoles = {{"split", true}, {"keep", false}};
+const std::map<std::string, bool> kEnds = {{"adjusted", true}, {"fitted", false}};
 const std::map<std::string, ParticleLimit> kLimits = {{"bins", ParticleLimit::Bins},
                                                       {"segment", ParticleLimit::Segment}};
 
@@ -51,7 +57,14 @@ ViewpointDependentOptions dependentOptions(const FitterInput& input) {
 
 void addFitterOptions(Command& command, FitterInput& input) {
   SegmentFitterOptions& options = input.options;
+  const auto as_in_paper = [&input] {
+    input.options = SegmentFitterOptions::leal2000();
+    input.utility = "viewpoint-invariant";
+    input.no_prune = input.no_refine = input.as_in_paper = true;
+  };
   for (const Option& option : {
+           command.preset("--as-in-paper", as_in_paper,
+                          "map as printed in Leal 2000; other options override single settings"),
            command.choice("--utility", input.utility,
                           {"description-length", "viewpoint-invariant", "viewpoint-dependent"},
                           "criterion for splitting and merging segments"),
@@ -73,6 +86,10 @@ void addFitterOptions(Command& command, FitterInput& input) {
                           "viewpoint-dependent: more detail this near to the sensor [m]; default: 5"),
            command.number("--view-scale", input.view_scale, 1e-3, 1.0,
                           "viewpoint-dependent: factor of --l-min in that area; default: 0.33"),
+           command.text(
+               "--observer-path", input.observer_path,
+               "viewpoint-dependent: after the scans, an observer walks along these positions (file with x y per line, "
+               "or poses); the map has more detail near it"),
            command.number("--range-noise", options.noise.range, 0.0, 100.0,
                           "standard deviation of the laser's ranges [m]"),
            command.number("--bearing-noise", options.noise.bearing, 0.0, 1.0,
@@ -83,12 +100,23 @@ void addFitterOptions(Command& command, FitterInput& input) {
            command.choiceOf("--particle-limit", options.particles.limit, kLimits,
                             R"(where surplus particles are removed: in bins of 0.25 m with too many (bins),
                             or anywhere in the segment, as in the paper (segment))"),
+           command.choiceOf(
+               "--association", options.association, kAssociations,
+               "segment of an observation: nearest with a fitting surface (surface), or nearest whose polygon contains "
+               "the mean of the samples, as in the paper (polygon)"),
+           command.choiceOf("--merge-candidates", options.merge_candidates, kCandidates,
+                            "segments that can be merged: near ones, or only linked ones, as in the paper"),
+           command.choiceOf("--holes", options.split_holes, kHoles,
+                            "segments without evidence for more than 0.5 m: split there, or keep, as in the paper"),
+           command.choiceOf("--ends", options.adjust_ends, kEnds,
+                            "ends of segments: adjusted to nearby walls, or fitted, as in the paper"),
            command.flag("--no-prune", input.no_prune, "keep segments that many rays pass through"),
            command.flag("--no-refine", input.no_refine,
                         "do not optimise the whole map at the end; the utilities of the paper never do"),
            command.seed(options.particles.seed, "seed of the particles"),
        })
     option.group(kGroup);
+  command.files({"--observer-path"});
 }
 
 std::string givenFitterOption(const Command& command) {
@@ -108,6 +136,9 @@ SegmentFitterOptions fitterOptions(const FitterInput& input) {
 
 std::shared_ptr<SegmentUtility> makeUtility(const FitterInput& input) {
   refuse(!input.viewpoint.empty() && !isDependent(input), "--viewpoint", "add --utility viewpoint-dependent");
+  refuse(!input.observer_path.empty() && !isDependent(input), "--observer-path", "add --utility viewpoint-dependent");
+  refuse(!input.observer_path.empty() && !input.viewpoint.empty(), "--observer-path",
+         "not with --viewpoint, because that observer does not move");
   refuse(input.view_radius && !isDependent(input), "--view-radius", "add --utility viewpoint-dependent");
   refuse(input.view_scale && !isDependent(input), "--view-scale", "add --utility viewpoint-dependent");
   refuse(input.view_radius && !input.viewpoint.empty(), "--view-radius", "not with --viewpoint, which has a radius");

@@ -17,7 +17,8 @@ struct FitterInput {
   std::string utility = "description-length";
   std::optional<double> min_length, sigma, segment_cost, merge_ratio, view_radius, view_scale;
   std::vector<double> viewpoint;  // x y r, or empty
-  bool no_prune = false, no_refine = false;
+  std::string observer_path;      // file, or empty
+  bool no_prune = false, no_refine = false, as_in_paper = false;
 };
 
 /// Adds these options as a separate group.

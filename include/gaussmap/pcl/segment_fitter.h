@@ -27,10 +27,12 @@ namespace gaussmap {
 template <typename PointT>
 class GAUSSMAP_API PointCloudSegmentFitter : public pcl::PCLBase<PointT> {
  public:
-  /// Makes an empty map. Throws std::invalid_argument if an option is out of range; the message names the option.
+  /// Makes an empty map. The parameters are those of SegmentFitter. Throws std::invalid_argument if an option is out of
+  /// range; the message names the option.
   explicit PointCloudSegmentFitter(const SegmentFitterOptions& options = {},
-                                   std::shared_ptr<SegmentUtility> utility = {})
-      : fitter_(options, std::move(utility)) {}
+                                   std::shared_ptr<SegmentUtility> utility = {},
+                                   std::shared_ptr<const ObservationModel> observation_model = {})
+      : fitter_(options, std::move(utility), std::move(observation_model)) {}
 
   /// Sets which points of a cloud are used: a horizontal slice of a three-dimensional cloud, and a maximum range.
   void setPlanarScan(const PlanarScanOptions& options) { planar_ = options; }
@@ -59,6 +61,10 @@ class GAUSSMAP_API PointCloudSegmentFitter : public pcl::PCLBase<PointT> {
       return {};
     }
   }
+
+  /// Moves the observer to a position [m, map frame] without a cloud, see SegmentFitter::observe(). Throws
+  /// std::invalid_argument if the position is not finite.
+  SegmentStatistics observe(const Vector<2>& position) { return fitter_.observe(position); }
 
   /// Finds the points of the input cloud that lie on each segment of the current map. `segments` gets one list of
   /// indices per segment, in the order of SegmentMap::segments.

@@ -29,9 +29,26 @@ enum class EvidencePolicy {
 enum class ParticleLimit {
   /// The limit holds for every 0.25 m of the segment. Random particles of a stretch with too many are deleted.
   Bins,
-  /// The limit holds for the whole segment, as in the paper. Random particles of the segment are deleted. Parts that
-  /// are seldom seen can then lose their particles.
+  /// The limit holds for the whole segment, as in the paper. Before an observation is added, random particles of the
+  /// segment are deleted to make room for it. Parts that are seldom seen can then lose their particles.
   Segment
+};
+
+/// Which segment an observation belongs to.
+enum class SegmentAssociation {
+  /// The nearest segment whose polygon contains the end of the beam. The sensor must also be on the free side of the
+  /// segment, and the neighbouring beams must show a surface of about the same direction.
+  Surface,
+  /// The nearest segment whose polygon contains the mean of the samples of the observation, as in the paper, sec. 4.3.
+  Polygon
+};
+
+/// Which segments can be merged with a segment.
+enum class MergeCandidates {
+  /// The linked neighbours, and other segments near it that have about the same direction.
+  Near,
+  /// Only the linked neighbours, as in the paper, eq. (4).
+  Linked
 };
 
 /// Options of EvidencePolicy::ParticleSets.
@@ -60,11 +77,23 @@ struct SegmentOptimisationOptions {
 
 /// Options of SegmentFitter.
 struct GAUSSMAP_API SegmentFitterOptions {
-  /// Returns the options of the paper, Leal 2000: particles, a limit per segment, no pruning, and no optimisation of
-  /// the whole map.
+  /// Returns the options of the paper, Leal 2000: 30 particles per observation, at most 300 per metre, a limit per
+  /// segment, association by the polygon only, merges of linked segments only, no splits at holes, no change of the
+  /// ends, no pruning, and no optimisation of the whole map.
   ///
   /// The utility is a separate parameter. The paper's utility is eq. (4):
   /// `SegmentFitter fitter(SegmentFitterOptions::leal2000(), std::make_shared<ViewpointInvariantUtility>());`
+  ///
+  /// The paper does not say everything. Where it says nothing, the preset does the same as the defaults:
+  /// - The polygon of a segment is a rectangle, see min_half_width and growth. Of several segments whose polygons
+  ///   contain an observation, the nearest gets it.
+  /// - Neighbouring beams without a segment become one new segment, which the utility can split.
+  /// - A segment is split where the summed squared errors of both parts are smallest. The utility votes on a segment
+  ///   again after each scan that observed it.
+  /// - Segments are linked if neighbouring beams end on them and their ends are less than `gap` apart. If the lines of
+  ///   linked segments meet near these ends, both ends are moved to the intersection.
+  /// - The upper bound of the particles is that of 10 l_min of length.
+  /// - The threshold sigma_th and, for l_min = 1 m, the factor alpha of eq. (4) are those of ViewpointInvariantOptions.
   static SegmentFitterOptions leal2000();
 
   EvidencePolicy policy = EvidencePolicy::MomentCells;  ///< how a segment stores its observations
@@ -76,16 +105,20 @@ struct GAUSSMAP_API SegmentFitterOptions {
   /// observations in the polygon can be associated with the segment.
   double min_half_width = 0.1;
   double growth = 0.3;  ///< the polygon extends beyond both ends of the segment by this length [m], >= 0
-  /// Adjacent beams are linked if their ends are less than this apart [m], > 0. A segment is split where it has no
-  /// evidence for more than this length.
+  /// Adjacent beams are linked if their ends are less than this apart [m], > 0.
   double gap = 0.5;
+  SegmentAssociation association = SegmentAssociation::Surface;  ///< which segment an observation belongs to
+  MergeCandidates merge_candidates = MergeCandidates::Near;      ///< which segments can be merged
+  bool split_holes = true;  ///< splits a segment where it has no evidence for more than `gap`, without a vote
+  /// map() fits the lines without the cells at their ends, and extends free ends to walls less than 15 cm away.
+  bool adjust_ends = true;
   bool prune = true;     ///< deletes segments if many more rays cross them than end on them
   bool optimise = true;  ///< map() optimises all segments together, if SegmentUtility::optimisable() is true
   SegmentOptimisationOptions optimisation;  ///< options of this optimisation
 };
 
-/// What one call of SegmentFitter::add() did, and the state of the map after it. The curves of Leal 2000 Figs. 7 and 8
-/// show such values.
+/// What one call of SegmentFitter::add() or observe() did, and the state of the map after it. The curves of Leal 2000
+/// Figs. 7 and 8 show such values.
 struct SegmentStatistics {
   std::size_t beams = 0;         ///< number of beams with a return
   std::size_t associated = 0;    ///< number of beams that were associated with a segment of the map
@@ -101,20 +134,27 @@ struct SegmentStatistics {
 /// Builds a map of linked line segments scan by scan, after Leal, Scheding, Dissanayake 2000.
 ///
 /// Observations are associated with segments, and segments are fitted to their evidence. A utility decides whether a
-/// segment is split, merged or left unchanged. Four defaults differ from the paper because they give better maps:
+/// segment is split, merged or left unchanged. The defaults differ from the paper because they give better maps:
 /// - The evidence is kept as moments in cells, not as particles (see EvidencePolicy).
 /// - A split or merge must shorten the description of the map (see DescriptionLengthUtility). In the paper, the
 ///   variance must pass a threshold, eq. (4).
 /// - Segments that many rays cross are deleted (see SegmentFitterOptions::prune).
 /// - map() optimises all segments together (see SegmentFitterOptions::optimise).
+/// - Smaller differences: `association`, `merge_candidates`, `split_holes` and `adjust_ends` of the options.
 ///
 /// For the method of the paper, use SegmentFitterOptions::leal2000() with a ViewpointInvariantUtility. The memory grows
 /// with the map, not with the number of scans. The fitter uses one thread; the same scans and seed give the same map.
 class GAUSSMAP_API SegmentFitter {
  public:
-  /// Makes an empty map. Without a utility, DescriptionLengthUtility is used. Throws std::invalid_argument if an option
-  /// is out of range; the message gives the option and the rule.
-  explicit SegmentFitter(const SegmentFitterOptions& options = {}, std::shared_ptr<SegmentUtility> utility = {});
+  /// Makes an empty map. Without a utility, DescriptionLengthUtility is used. Without an observation model, the options
+  /// choose it: UnscentedObservations for moments, SampledObservations for particles, both with the noise of the
+  /// options.
+  ///
+  /// A model of your own replaces these points. SegmentFitterOptions::noise is then used only for the covariances of
+  /// the segments. Throws std::invalid_argument if an option is out of range; the message gives the option and the
+  /// rule.
+  explicit SegmentFitter(const SegmentFitterOptions& options = {}, std::shared_ptr<SegmentUtility> utility = {},
+                         std::shared_ptr<const ObservationModel> observation_model = {});
   ~SegmentFitter();
   SegmentFitter(SegmentFitter&&) noexcept;
   SegmentFitter& operator=(SegmentFitter&&) noexcept;
@@ -122,9 +162,17 @@ class GAUSSMAP_API SegmentFitter {
   /// Adds one scan to the map. Beams without a return are ignored, and the beams on both sides of them are not linked.
   ///
   /// Throws std::invalid_argument if the pose is not finite or its covariance is not positive semidefinite. Also throws
-  /// it if the numbers of bearings and ranges differ, or the bearings are not finite and ascending. The scan is then
-  /// not counted.
+  /// it if the numbers of bearings and ranges differ, or the bearings are not finite and ascending. Also throws it if
+  /// an observation model of your own returns points that are not finite, or weights that are negative or do not sum
+  /// to 1. The scan is then not counted.
   SegmentStatistics add(const LaserScan& scan);
+
+  /// Moves the observer to a position [m, map frame] without a scan, Leal 2000 Fig. 9 (b).
+  ///
+  /// The utility receives the position and votes again on the segments that SegmentUtility::reconsider() selects. With
+  /// ViewpointDependentUtility, the map gets more detail near the position, and less where the observer was before. Of
+  /// the result, the members that describe a scan are 0. Throws std::invalid_argument if the position is not finite.
+  SegmentStatistics observe(const Vector<2>& position);
 
   /// Returns a copy of the current map, optimised if SegmentFitterOptions::optimise is set.
   SegmentMap map() const;

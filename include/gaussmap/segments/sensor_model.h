@@ -30,9 +30,12 @@ struct ObservationPoint {
 class GAUSSMAP_API ObservationModel {
  public:
   virtual ~ObservationModel() = default;
-  /// Replaces the content of `points` by the possible ends of one beam. The beam must have a return. Every beam of a
-  /// scan gets the same number of points. `number` is the number of the observation; it is different for every
-  /// observation of the map.
+  /// Replaces the content of `points` by the possible ends of one beam. The beam must have a return. `number` is the
+  /// number of the observation; it is different for every observation of the map.
+  ///
+  /// The points must be in the frame of the pose of the scan. SegmentFitter moves the origin of this frame near the
+  /// map, so that the coordinates are small. EvidencePolicy::ParticleSets needs M points of equal weight; if a model
+  /// returns others, M of them are drawn by their weights.
   virtual void observe(const LaserScan& scan, std::size_t beam, std::uint64_t number,
                        std::vector<ObservationPoint>& points) const = 0;
 };

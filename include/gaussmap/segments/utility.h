@@ -36,7 +36,8 @@ class GAUSSMAP_API SegmentUtility {
   virtual double merge(const SegmentGoals& first, const SegmentGoals& second, const SegmentGoals& whole) const = 0;
   /// Returns U_nothing, the vote for no change.
   virtual double nothing(const SegmentGoals&) const { return 0.0; }
-  /// Receives the position of the observer [m, map frame] before every scan.
+  /// Receives the position of the observer [m, map frame]: of the sensor before every scan, and those given to
+  /// SegmentFitter::observe().
   virtual void observe(const Vector<2>&) {}
   /// Returns true if a segment with these end points needs new votes, although it has no new evidence. The reason can
   /// be that the observer has moved.
@@ -73,8 +74,8 @@ struct ViewpointDependentOptions {
   ViewpointInvariantOptions far;  ///< options for segments outside the field VF
   double radius = 5.0;            ///< radius of the field VF, a circle around the observer [m], > 0
   double scale = 0.33;            ///< l_min inside the field is `scale` times l_min outside, in (0, 1]
-  /// Position of the observer [m], map frame. If `fixed` is false, the position of the sensor replaces it with each
-  /// scan.
+  /// Position of the observer [m], map frame. If `fixed` is false, each scan replaces it by the position of the sensor,
+  /// and SegmentFitter::observe() by the given position.
   Vector<2> viewpoint{0.0, 0.0};
   bool fixed = false;  ///< true: the observer stays at `viewpoint`
 };
@@ -83,9 +84,9 @@ struct ViewpointDependentOptions {
 /// segments that meet the field around the observer.
 ///
 /// After the observer has left, the splits near its place are undone. The text of the paper says this, but its equation
-/// does not. This class merges two segments outside the field if together they are shorter than l_min.
-/// Splits as short as this happen only inside the field. Two such segments therefore come from a time when the observer
-/// was near.
+/// does not. This class merges two segments outside the field if together they are shorter than l_min. Most of them
+/// come from splits when the observer was near. Short segments that were created so are merged too, so outside the
+/// field the map can be coarser than that of eq. (4).
 class GAUSSMAP_API ViewpointDependentUtility : public SegmentUtility {
  public:
   /// Stores the options. Throws std::invalid_argument if an option is out of range; the message names the option.
