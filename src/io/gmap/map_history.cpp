@@ -57,6 +57,20 @@ HistoryJson wordOf(MergeCost cost) {
   return cost == MergeCost::Runnalls ? HistoryJson("runnalls") : HistoryJson();
 }
 
+const char* wordOf(GaussianDistance distance) {
+  switch (distance) {
+    case GaussianDistance::SymmetricKL:
+      return "symmetric-kl";
+    case GaussianDistance::Bhattacharyya:
+      return "bhattacharyya";
+    case GaussianDistance::Wasserstein:
+      return "wasserstein";
+    case GaussianDistance::KL:
+      break;
+  }
+  return "kl";
+}
+
 }  // namespace
 
 std::string refineStep(const Budget& budget, const RefineOptions& options, const std::string& details) {
@@ -69,6 +83,7 @@ std::string refineStep(const Budget& budget, const RefineOptions& options, const
     if (options.queue != usual.queue) own["queue"] = options.queue;
     if (options.max_swaps != usual.max_swaps) own["max_swaps"] = options.max_swaps;
     if (options.seed_rule == ClusterSeed::InputGaussian) own["seed_rule"] = "datum";
+    if (options.distance != usual.distance) own["distance"] = wordOf(options.distance);
   }
   return withDetails(own, details);
 }
