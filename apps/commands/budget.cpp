@@ -14,6 +14,10 @@ namespace {
 
 const std::map<std::string, RefineMethod> kMethods = {{"agglomerate", RefineMethod::Agglomerate},
                                                       {"insert", RefineMethod::Insert}};
+const std::map<std::string, GaussianDistance> kDistances = {{"kl", GaussianDistance::KL},
+                                                            {"symmetric-kl", GaussianDistance::SymmetricKL},
+                                                            {"bhattacharyya", GaussianDistance::Bhattacharyya},
+                                                            {"wasserstein", GaussianDistance::Wasserstein}};
 const std::map<std::string, MergeCost> kCosts = {{"volume", MergeCost::Volume}, {"runnalls", MergeCost::Runnalls}};
 
 template <int D>
@@ -119,6 +123,10 @@ void addBudgetOptions(Command& command, BudgetInput& input) {
               insert: start with one Gaussian per cell and add clusters, as in the paper)")
       .rare();
   addCostOption(command, input);
+  command
+      .choice("--distance", input.distance, Command::wordsOf(kDistances),
+              "distance from a Gaussian to a cluster with --method insert (default: kl, the KL divergence)")
+      .rare();
   command.seed(input.refine.seed, "seed of the random swaps of --method insert").rare();
 }
 
@@ -127,6 +135,7 @@ void checkBudget(const BudgetInput& input) {
   if (input.method == "insert" && (!input.max_bytes.empty() || input.max_error > 0.0))
     throw UsageError("--method insert: supports only --budget and --max-gaussians");
   if (input.method == "insert" && input.cost) throw UsageError("--cost: only for --method agglomerate");
+  if (input.method != "insert" && input.distance) throw UsageError("--distance: only for --method insert");
 }
 
 template <int D>
@@ -135,6 +144,7 @@ GaussianMap<D> refineWithin(GaussianMap<D> map, const BudgetInput& input, MapMet
   RefineOptions options = input.refine;
   options.method = kMethods.at(input.method);
   options.merge_cost = mergeCost(input);
+  if (input.distance) options.distance = kDistances.at(*input.distance);
   const auto* per_cell = std::get_if<PerCell>(&budget);
   const bool one_per_cell = per_cell != nullptr && per_cell->gaussians == 1.0;
   const bool is_searched = !input.max_bytes.empty() || input.max_error > 0.0;

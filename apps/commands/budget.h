@@ -20,9 +20,10 @@ struct BudgetInput {
   std::string max_bytes;                   // with suffix k, M, G
   double max_error = 0.0;                  // [m]; 0: not given
   std::string method = "agglomerate";
-  std::optional<std::string> cost;  // of a merge; only with --method agglomerate
-  RefineOptions refine;             // seed and threads
-  bool curves = true;               // measure the error curves of other budgets
+  std::optional<std::string> cost;      // of a merge; only with --method agglomerate
+  std::optional<std::string> distance;  // from a Gaussian to a cluster; only with --method insert
+  RefineOptions refine;                 // seed and threads
+  bool curves = true;                   // measure the error curves of other budgets
 };
 void addBudgetOptions(Command& command, BudgetInput& input);
 /// A part of these options, for commands that only merge clusters: the budgets. Returns the option --budget.

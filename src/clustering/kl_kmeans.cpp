@@ -54,7 +54,7 @@ KLKMeans<D>::KLKMeans(const KLKMeansOptions& options) : options_(options) {
 
 template <int D>
 KLClustering<D> KLKMeans<D>::fit(const std::vector<Gaussian<D>>& data) const {
-  const KLProblem<D> problem(data);
+  const KLProblem<D> problem(data, options_.distance);
   const auto k = static_cast<std::size_t>(options_.k);
   if (k >= data.size()) return problem.eachItsOwn();
   Random random(options_.seed);
@@ -68,7 +68,7 @@ KLClustering<D> KLKMeans<D>::fit(const std::vector<Gaussian<D>>& data) const {
 template <int D>
 KLClustering<D> KLKMeans<D>::run(const std::vector<Gaussian<D>>& data,
                                  const std::vector<Gaussian<D>>& initial_centres) const {
-  const KLProblem<D> problem(data);
+  const KLProblem<D> problem(data, options_.distance);
   if (data.empty()) return {};
   if (initial_centres.empty()) throw std::invalid_argument("k-means needs at least one initial cluster centre");
   std::vector<Gaussian<D>> centres = initial_centres;
@@ -80,7 +80,7 @@ template <int D>
 KLClustering<D> insertCluster(const std::vector<Gaussian<D>>& data, const std::vector<Gaussian<D>>& current_centres,
                               const KLKMeansOptions& options) {
   checkOptions(options);
-  const KLProblem<D> problem(data);
+  const KLProblem<D> problem(data, options.distance);
   if (current_centres.size() + 1 >= data.size()) return problem.eachItsOwn();
   if (current_centres.empty()) return problem.finish(problem.oneCluster());
   std::vector<Gaussian<D>> centres = current_centres;

@@ -7,7 +7,8 @@
 namespace gaussmap::detail {
 
 /// Adds a cluster centre at the Gaussian of largest distortion, then runs k-means: lines 5 and 6 of Algorithm 2. The
-/// distortion never rises. The number of clusters can stay the same.
+/// distortion never rises above that of the moment matches of the labels of `partition`. The number of clusters can
+/// stay the same.
 template <int D>
 KLPartition<D> insertSeed(const KLProblem<D>& problem, const KLPartition<D>& partition, const KLKMeansOptions& options);
 

@@ -136,6 +136,7 @@ class InsertionRefiner {
     KLKMeansOptions options;
     options.max_swaps = options_.max_swaps;
     options.seed_rule = options_.seed_rule;
+    options.distance = options_.distance;
     options.seed = seedOf(scale_.coarse.keys[cell], current.size());
     insertion.clustering = insertCluster(data, current, options);
     insertion.error = cellError(insertion.clustering.centres, data, factorsUnder(cell));

@@ -177,7 +177,43 @@ TEST_F(BudgetApps, RefuseOptionsOfTheOtherMethod) {
     };
     refuse("--cost: only for --method agglomerate", {"--method", "insert", "--cost", "volume"});
     refuse("--cost", {"--cost", "area"});
+    refuse("--distance: only for --method insert", {"--distance", "kl"});
+    refuse("--distance: only for --method insert", {"--distance", "wasserstein", "--method", "agglomerate"});
+    refuse("--distance", {"--distance", "euclid", "--method", "insert"});
+    refuse("--distance", {"--distance", "--method", "insert"});
   }
+  expectUsageError("--distance: not with --online", {"pcd2map", scene("scans"), "-o", own("x.gmap"), "--online",
+                                                     "--method", "insert", "--distance", "bhattacharyya"});
+}
+
+TEST_F(BudgetApps, InsertByTheDistanceAskedFor) {
+  const auto refined = [&](const std::string& name, std::vector<std::string> options) {
+    options.insert(options.end(), {"--method", "insert", "--budget", "2"});
+    const Outcome outcome = refineWith(name, options);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return load(own(name));
+  };
+  const GaussianMapOctree usual = refined("usual.gmap", {});
+  expectSameMap<3>(refined("kl.gmap", {"--distance", "kl"}), usual);
+  EXPECT_FALSE(infoOf(own("kl.gmap"))["metadata"]["history"][1].contains("distance"));
+  std::vector<GaussianMapOctree> maps = {usual};
+  const std::pair<const char*, GaussianDistance> others[] = {{"symmetric-kl", GaussianDistance::SymmetricKL},
+                                                             {"bhattacharyya", GaussianDistance::Bhattacharyya},
+                                                             {"wasserstein", GaussianDistance::Wasserstein}};
+  for (const auto& [word, distance] : others) {
+    const std::string name = std::string(word) + ".gmap";
+    const GaussianMapOctree map = refined(name, {"--distance", word});
+    EXPECT_EQ(infoOf(own(name))["metadata"]["history"][1]["distance"], word);
+    RefineOptions options;
+    options.method = RefineMethod::Insert;
+    options.distance = distance;
+    expectSameMap<3>(map, refine(load(scene("one.gmap")), PerCell{2.0}, options).map);
+    for (const GaussianMapOctree& other : maps) EXPECT_FALSE(sameMap<3>(map, other)) << word;
+    maps.push_back(map);
+  }
+  succeed({"pcd2map", scene("scans"), "-o", own("direct.gmap"), "--method", "insert", "--budget", "2", "--distance",
+           "wasserstein"});
+  expectSameMap<3>(load(own("direct.gmap")), maps.back());
 }
 
 }  // namespace

@@ -122,7 +122,7 @@ TEST(KLProblem, GivesTheDivergencesOfThePaper) {  // what the swap loop compares
   for (std::size_t j = 0; j < data.size(); ++j)
     EXPECT_NEAR(own(Eigen::Index(j)), klDivergence(data[j], centres[std::size_t(partition.labels[j])]),
                 1e-10 * (1.0 + own(Eigen::Index(j))));
-  const Eigen::MatrixXd between = KLProblem<3>::distancesBetween(centres);
+  const Eigen::MatrixXd between = problem.distancesBetween(centres);
   for (Eigen::Index u = 0; u < 5; ++u)
     for (Eigen::Index v = 0; v < 5; ++v)
       EXPECT_NEAR(between(u, v), klDivergence(centres[std::size_t(u)], centres[std::size_t(v)]),

@@ -34,16 +34,16 @@ void change(std::vector<Gaussian<D>>& centres, const std::vector<Gaussian<D>>& p
 }
 
 template <int D>
-void expectAssignmentsLikeFreshOnes(std::uint64_t seed) {
+void expectAssignmentsLikeFreshOnes(std::uint64_t seed, GaussianDistance distance) {
   Random random(seed);
   const std::vector<Gaussian<D>> data = randomGaussians<D>(random, 600);  // more than two blocks
-  const KLProblem<D> problem(data);
+  const KLProblem<D> problem(data, distance);
   std::vector<Gaussian<D>> pool;
   for (std::size_t j = 0; j < data.size(); ++j) pool.push_back(problem.input(j));
   std::vector<Gaussian<D>> centres(pool.begin(), pool.begin() + 20);
-  KLAssignment<D> kept;
+  CentreAssignment kept;
   for (int round = 0; round < 200; ++round) {
-    KLAssignment<D> fresh;
+    CentreAssignment fresh;
     problem.assign(centres, kept);
     problem.assign(centres, fresh);
     ASSERT_EQ(kept.labels, fresh.labels) << "round " << round;
@@ -54,8 +54,13 @@ void expectAssignmentsLikeFreshOnes(std::uint64_t seed) {
 
 TEST(KLProblem, AssignsLikeTheFirstTimeWhateverItAssignedBefore) {
   for (std::uint64_t seed = 1; seed < 6; ++seed) {
-    expectAssignmentsLikeFreshOnes<2>(seed);
-    expectAssignmentsLikeFreshOnes<3>(seed);
+    expectAssignmentsLikeFreshOnes<2>(seed, GaussianDistance::KL);
+    expectAssignmentsLikeFreshOnes<3>(seed, GaussianDistance::KL);
+  }
+  for (const GaussianDistance distance :
+       {GaussianDistance::SymmetricKL, GaussianDistance::Bhattacharyya, GaussianDistance::Wasserstein}) {
+    expectAssignmentsLikeFreshOnes<2>(6, distance);
+    expectAssignmentsLikeFreshOnes<3>(7, distance);
   }
 }
 
@@ -65,7 +70,7 @@ TEST(KLProblem, AssignsEveryDatumToItsNearestCentre) {
   const KLProblem<3> problem(data);
   std::vector<Gaussian<3>> centres;
   for (std::size_t j = 0; j < 12; ++j) centres.push_back(problem.input(25 * j));
-  KLAssignment<3> assignment;
+  CentreAssignment assignment;
   problem.assign(centres, assignment);
   for (std::size_t j = 0; j < data.size(); ++j) {
     const double own = klDivergence(problem.input(j), centres[static_cast<std::size_t>(assignment.labels[j])]);

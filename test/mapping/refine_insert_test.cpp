@@ -126,5 +126,32 @@ TEST(RefineByInsertion, OfThePaperWeighsTheErrorByTheLearningRate) {
   EXPECT_FALSE(isByWeighedError());
 }
 
+/// Returns the mean of KL(finest Gaussian || its parent), weighted with the numbers of points.
+double meanDivergence(const GaussianMap<3>& map) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < map.gaussianCount(0); ++i)
+    sum += map.gaussian(i, 0).weight * klDivergence(map.gaussian(i, 0), map.gaussian(map.parentOf(i, 0), 1));
+  return sum;
+}
+
+TEST(RefineByInsertion, TakesTheDistanceAndIsTheSameAtAnyNumberOfThreads) {
+  const GaussianMap<3> map = roomMap(20000);
+  const double one_per_cell = meanDivergence(map);
+  std::vector<std::vector<std::uint32_t>> parents;
+  for (const GaussianDistance distance : {GaussianDistance::KL, GaussianDistance::SymmetricKL,
+                                          GaussianDistance::Bhattacharyya, GaussianDistance::Wasserstein}) {
+    RefineOptions options = by(RefineMethod::Insert);
+    options.distance = distance;
+    options.threads = 1;
+    const GaussianMap<3> refined = refine(map, PerCell{2.0}, options).map;
+    EXPECT_LT(meanDivergence(refined), 0.9 * one_per_cell) << static_cast<int>(distance);
+    EXPECT_GT(refined.gaussianCount(1), map.cellCount(1) * 19 / 10);
+    options.threads = 3;
+    expectSameBytes(refine(map, PerCell{2.0}, options).map, refined);
+    for (const auto& others : parents) EXPECT_NE(refined.scale(0).parent, others);
+    parents.push_back(refined.scale(0).parent);
+  }
+}
+
 }  // namespace
 }  // namespace gaussmap

@@ -48,6 +48,31 @@ TEST(PointCloudKLKMeans, GivesTheClustersOfTheCore) {
   EXPECT_EQ(members, cloud->size());
 }
 
+TEST(PointCloudKLKMeans, TakesTheDistanceOfTheOptions) {
+  const auto cloud = finest();
+  std::vector<std::vector<int>> labels;
+  for (const GaussianDistance distance : {GaussianDistance::KL, GaussianDistance::SymmetricKL,
+                                          GaussianDistance::Bhattacharyya, GaussianDistance::Wasserstein}) {
+    KLKMeansOptions options;
+    options.k = 7;
+    options.distance = distance;
+    PointCloudKLKMeans clustering(options);
+    clustering.setInputCloud(cloud);
+    std::vector<pcl::PointIndices> clusters;
+    clustering.cluster(clusters);
+    ASSERT_EQ(clusters.size(), clustering.result().centres.size());
+    EXPECT_GT(clusters.size(), 4u);
+    for (const std::vector<int>& others : labels) EXPECT_NE(clustering.result().labels, others);
+    labels.push_back(clustering.result().labels);
+    PointCloudKLKMeans later;
+    later.setNumberOfClusters(7);
+    later.setDistance(distance);
+    later.setInputCloud(cloud);
+    later.cluster(clusters);
+    EXPECT_EQ(later.result().labels, labels.back());
+  }
+}
+
 TEST(PointCloudKLKMeans, ClustersChosenPointsAndLeavesOutThoseThatAreNone) {
   const auto cloud = finest();
   (*cloud)[4].x = std::numeric_limits<float>::quiet_NaN();

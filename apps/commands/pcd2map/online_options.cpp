@@ -53,6 +53,7 @@ void checkOnline(const OnlineInput& input, const BudgetInput& budget, const Outp
   if (!budget.max_gaussians.empty() || !budget.max_bytes.empty() || budget.max_error > 0.0)
     throw UsageError("--online: supports only --budget; use gaussmap refine afterwards for another limit");
   if (budget.cost) throw UsageError("--cost: not with --online");
+  if (budget.distance) throw UsageError("--distance: not with --online");
   if (budget.refine.seed != RefineOptions().seed) throw UsageError("--seed: not with --online");
   checkOutputs({input.stats, input.removed}, map.force, inputs, {map.path});
   refuseOtherKinds(input.stats, "a table", {".csv", ".txt"});

@@ -10,7 +10,7 @@
 namespace gaussmap {
 
 /// How a new cluster centre is made, Yguel 2009, Algorithm 2, lines 5, 18 and 21. The centre is placed at the Gaussian
-/// of largest distortion: the one with the largest divergence from the centre of its cluster.
+/// of largest distortion: the one with the largest distance from the centre of its cluster.
 enum class ClusterSeed {
   /// The centre has the mean of this Gaussian and the covariance of the cluster that contained it. Neighbours of the
   /// Gaussian can then join the new cluster.
@@ -27,6 +27,7 @@ struct KLKMeansOptions {
   double tolerance = 1e-6;  ///< a run stops when the distortion falls by less than this fraction, in [0, 1)
   int max_swaps = 20;       ///< maximum rounds of the swap loop of Algorithm 2, >= 0 (0 = plain k-means)
   ClusterSeed seed_rule = ClusterSeed::ParentCovariance;  ///< the new centre in the swap loop and in insertCluster()
+  GaussianDistance distance = GaussianDistance::KL;       ///< from a Gaussian to a cluster centre; see KLKMeans
   std::uint64_t seed = 0;                                 ///< same input + same seed = same result
 };
 
@@ -35,27 +36,34 @@ template <int D>
 struct KLClustering {
   std::vector<Gaussian<D>> centres;  ///< k' cluster centres, at most k; each is the moment match of its members
   std::vector<int> labels;           ///< per Gaussian: the index of its cluster centre, in [0, k')
-  double distortion = 0.0;           ///< sum_j alpha_j KL(z_j || w_label(j)) [nat], Yguel 2009 eq. (7)
-  int iterations = 0;                ///< number of iterations of all k-means runs, including those of rejected swaps
-  int swaps = 0;                     ///< accepted rounds of the swap loop
-  bool converged = true;             ///< false: the run that gave this result stopped at max_iterations
+  /// sum_j alpha_j d(z_j, w_label(j)), Yguel 2009 eq. (7), with the selected distance d [nat; Wasserstein: m^2]
+  double distortion = 0.0;
+  int iterations = 0;     ///< number of iterations of all k-means runs, including those of rejected swaps
+  int swaps = 0;          ///< accepted rounds of the swap loop
+  bool converged = true;  ///< false: the run that gave this result stopped at max_iterations
 };
 
-/// Weighted k-means over Gaussians with the KL divergence as distance, Yguel 2009 sec. 5.2.1 (after Davis & Dhillon
-/// 2006).
+/// Weighted k-means over Gaussians, Yguel 2009 sec. 5.2.1 (after Davis & Dhillon 2006).
 ///
-/// Each input Gaussian joins the nearest cluster centre. The distance is the KL divergence, eq. (8); ties go to the
-/// smaller label. Each centre then becomes the moment match of its members, eqs. (9), (10). The run ends when the
-/// labels stay the same or the distortion, eq. (7), falls by less than the tolerance. A centre that loses its last
-/// member is dropped. The algorithm is single-threaded and deterministic.
+/// Each input Gaussian joins the nearest cluster centre. KLKMeansOptions::distance is the distance d_ZxF of Algorithm
+/// 2, from a Gaussian to a centre. By default, it is the KL divergence, eq. (8). Ties go to the smaller label. Each
+/// centre then becomes the moment match of its members, eqs. (9), (10). The run ends when the labels stay the same or
+/// the distortion, eq. (7), falls by less than the tolerance. A centre that loses its last member is dropped. The
+/// algorithm is single-threaded and deterministic.
+///
+/// The moment match is the centre of least distortion for the KL divergence only. With another distance, the distortion
+/// can rise in an iteration. The run then ends and returns the clusters of the iteration before. So the result never
+/// has a larger distortion than the moment matches of the first assignment. The initial centres of fit() do not depend
+/// on the distance.
 ///
 /// Weights must be positive and finite, means finite, and covariances positive definite. The functions throw
 /// std::invalid_argument for a weight or mean and std::domain_error for a covariance; the message gives the index of
 /// the Gaussian. Empty input gives an empty result.
 ///
-/// The divergences between all n Gaussians and all k centres are computed as one matrix product. Their rounding error
-/// is about 1e-16 (L / s)^2 nat, with L = extent of the input and s = smallest standard deviation of a centre. The
-/// distance of the input from the origin has no influence on this error.
+/// KL, SymmetricKL: the divergences between all n Gaussians and all k centres are computed as one matrix product. Their
+/// rounding error is about 1e-16 (L / s)^2 nat, with L = extent of the input and s = smallest standard deviation of a
+/// centre (SymmetricKL: or of the input). The distance of the input from the origin has no influence on this error.
+/// Bhattacharyya, Wasserstein: each pair is evaluated, which takes several times as long.
 template <int D>
 class GAUSSMAP_API KLKMeans {
  public:
@@ -85,7 +93,8 @@ class GAUSSMAP_API KLKMeans {
 /// - `current_centres` are the k - 1 current cluster centres; this defines k. If there are none, the result is one
 ///   cluster.
 /// - The result has at most k clusters. It can have fewer, for example if input Gaussians are equal.
-/// - The distortion never exceeds that of the current centres.
+/// - The distortion never exceeds that of the current centres. With a distance other than KL: never that of the moment
+///   matches of the Gaussians nearest to each current centre. If no new cluster improves them, they are the result.
 /// - If k >= n, each Gaussian becomes its own cluster, with distortion 0.
 ///
 /// KLKMeansOptions::k is not used. Input and errors are the same as for KLKMeans.

@@ -116,6 +116,7 @@ struct GAUSSMAP_API RefineOptions {
   int queue = 0;       ///< p, number of cells refined at a time, >= 1; 0: 1/250 of the scale's cells, at least 4
   int max_swaps = 20;  ///< maximum number of rounds of the swap loop per inserted cluster (see insertCluster()), >= 0
   ClusterSeed seed_rule = ClusterSeed::ParentCovariance;  ///< how a new cluster starts
+  GaussianDistance distance = GaussianDistance::KL;       ///< from a Gaussian to a cluster, see KLKMeans
   std::uint64_t seed = 0;                                 ///< same map + same seed = bit-identical result
   /// Adds clusters only to cells whose finer Gaussians have a mean probability of occupancy above 0.5, Yguel 2009 sec.
   /// 5.1. The probability is 1 / (1 + exp(-log-odds)). Has no effect on maps without occupancy.

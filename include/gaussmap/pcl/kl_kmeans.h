@@ -25,6 +25,8 @@ class GAUSSMAP_API PointCloudKLKMeans : public pcl::PCLBase<PointGaussian> {
 
   /// Sets the number of clusters.
   void setNumberOfClusters(int clusters) { options_.k = clusters; }
+  /// Sets the distance from a Gaussian to a cluster.
+  void setDistance(GaussianDistance distance) { options_.distance = distance; }
   /// Sets the seed of the random numbers.
   void setSeed(std::uint64_t seed) { options_.seed = seed; }
 

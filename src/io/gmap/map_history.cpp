@@ -58,6 +58,20 @@ HistoryJson wordOf(MergeCost cost) {
   return cost == MergeCost::Runnalls ? HistoryJson("runnalls") : HistoryJson();
 }
 
+const char* wordOf(GaussianDistance distance) {
+  switch (distance) {
+    case GaussianDistance::SymmetricKL:
+      return "symmetric-kl";
+    case GaussianDistance::Bhattacharyya:
+      return "bhattacharyya";
+    case GaussianDistance::Wasserstein:
+      return "wasserstein";
+    case GaussianDistance::KL:
+      break;
+  }
+  return "kl";
+}
+
 }  // namespace
 
 std::string refineStep(const Budget& budget, const RefineOptions& options, const std::string& details) {
@@ -72,6 +86,7 @@ std::string refineStep(const Budget& budget, const RefineOptions& options, const
     if (options.seed_rule == ClusterSeed::InputGaussian) own["seed_rule"] = "datum";
     if (options.only_occupied) own["only_occupied"] = true;
     if (options.learning_factor) own["learning_factor"] = true;
+    if (options.distance != usual.distance) own["distance"] = wordOf(options.distance);
   }
   return withDetails(own, details);
 }

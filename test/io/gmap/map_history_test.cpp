@@ -35,6 +35,12 @@ TEST(MapHistory, TellsTheMethodAndTheBudgetOfARefinement) {
   EXPECT_EQ(refineStep(PerCell{}, RefineOptions::yguel2009()),
             R"({"method":"insert","budget":3.0,"seed":0,"queue":4,"seed_rule":"datum","only_occupied":true,)"
             R"("learning_factor":true})");
+  RefineOptions options;
+  options.distance = GaussianDistance::Bhattacharyya;
+  EXPECT_EQ(refineStep(PerCell{2.5}, options), R"({"method":"agglomerate","budget":2.5})");
+  options.method = RefineMethod::Insert;
+  EXPECT_EQ(refineStep(PerCell{2.5}, options),
+            R"({"method":"insert","budget":2.5,"seed":0,"distance":"bhattacharyya"})");
 }
 
 TEST(MapHistory, TellsTheBudgetOfASimplification) {
