@@ -172,4 +172,24 @@ template <int D>
 GAUSSMAP_API RefineResult<D> refine(GaussianMap<D> map, const Budget& budget = PerCell{},
                                     const RefineOptions& options = {});
 
+/// How badly the Gaussians of a coarse scale represent the finer ones: Yguel 2009, eq. (6) and Fig. 5.
+///
+/// The values have no unit: they are squared numbers of standard deviations of the finer Gaussians. They easily differ
+/// by a factor of 1000 and more. The factor (1 - eps) of eq. (6) is 1, as in refine().
+struct CellErrors {
+  /// One value per cell of the scale: the error of the cell, which is the mean contribution of the finer Gaussians
+  /// below it. NaN for a cell without finer cells (see GaussianMap::isLeaf()).
+  std::vector<double> cells;
+  /// One value per Gaussian of the next finer scale: its contribution to the error of the cell above it. This is the
+  /// squared Mahalanobis distance, by its own covariance, of the nearest Gaussian of that cell.
+  std::vector<double> contributions;
+};
+
+/// Returns the errors of the cells of scale `scale` >= 1, and the contributions of the Gaussians of scale `scale` - 1.
+///
+/// `threads`: 0 = all cores. Throws std::out_of_range if the map does not have the scale or if it is the finest, and
+/// std::domain_error if a finer covariance is not positive definite.
+template <int D>
+GAUSSMAP_API CellErrors cellErrors(const GaussianMap<D>& map, int scale, int threads = 0);
+
 }  // namespace gaussmap
