@@ -9,6 +9,7 @@
 
 #include "commands/commands.h"
 #include "commands/depth_noise.h"
+#include "commands/evidence_options.h"
 #include "commands/scan_input.h"
 #include "common/command.h"
 #include "common/json.h"
@@ -211,6 +212,7 @@ Cleaned writeCleaned(const CleanCommand& command, const FileScans& scans, const 
 void run(CleanCommand command) {
   if (!command.writes() && command.labels.empty())
     throw UsageError("nothing to do: give -o DIR, --merged FILE, --removed FILE or --labels");
+  checkLink(command.options.cells.link, command.options.resolution);
   const double start = now();
   ScanEvidenceOptions& evidence = command.options.evidence;
   const AccumulateOptions input = accumulateOptions(command.input, command.options.resolution, evidence.threads);
@@ -263,6 +265,10 @@ void addClean(CLI::App& app) {
               "treat directions without a return as free space up to this range [m]")
       .rare();
   addDepthNoise(command, options->depth_noise);
+  MovingPointOptions& moving = options->options;
+  for (const Option& option : addEvidenceOptions(
+           command, {moving.cells.occupancy, moving.evidence.visibility, moving.cells.link, moving.cells.reach}))
+    option.group("Constants");
   addScanOptions(command, options->input);
   command.threads(options->options.evidence.threads);
   command.json(options->json);

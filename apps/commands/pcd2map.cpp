@@ -30,6 +30,8 @@ or else the present number of Gaussians per cell). Cells keep their occupancy, a
 Readers see either the old or the new file.
 
 --online adds one scan after the other, marks cells that the laser sees through as free, and deletes what has moved.
+With --as-in-paper, cells, learning, occupancy, deletion and refinement are those of Yguel et al. 2009. Options that are
+also given override these settings. The paper does not print the size of the budget (--budget).
 
 --planar builds a map in the plane z = 0 from scans of a planar laser: files of any kind, logs of CARMEN, LaserScan
 messages of recordings. 3-D scans need --slice: points between two heights of the map frame. With --online, only the
@@ -47,7 +49,7 @@ void run(const Pcd2mapOptions& options) {
   if (!options.input.extrinsic.empty()) inputs.emplace_back(options.input.extrinsic);
   MapTask task({"", options.output, options.budget.refine.threads, options.json}, inputs);
   checkBudget(options.budget);
-  checkOnline(options.online, options.budget, options.output, inputs);
+  checkOnline(options.online, options.budget, options.map.resolution, options.output, inputs);
   checkMemory(options);
 
   AccumulateOptions reading = accumulateOptions(options.input, options.map.resolution, options.budget.refine.threads);
@@ -72,6 +74,14 @@ void run(const Pcd2mapOptions& options) {
   task.report(report);
 }
 
+/// Sets the options of the paper. The budget stays as it is.
+void applyPaper(Pcd2mapOptions& options) {
+  options.online.options = OnlineOptions::yguel2009(options.planar ? 2 : 3);
+  options.online.as_in_paper = true;
+  options.map = options.online.options.map;
+  options.budget.method = "insert";
+}
+
 void addOptions(Command& command, Pcd2mapOptions& options) {
   addScanPaths(command, options.input);
   command.text("-o,--output", options.output.path, "map file to write (.gmap)");
@@ -79,12 +89,14 @@ void addOptions(Command& command, Pcd2mapOptions& options) {
   command.text("--update", options.update, "map file to add the scans to (.gmap)");
   command.flag("--planar", options.planar, "build a planar map (2-D); 3-D scans need --slice Z0 Z1");
   addSlice(command, options.slice).rare();
+  const Option as_in_paper = command.preset(
+      "--as-in-paper", [&options] { applyPaper(options); }, "use the settings of Yguel et al. 2009");
   command.number("--resolution", options.map.resolution, "side of the finest cells [m]");
   command.number("--scales", options.map.scales, "number of scales");
   command.number("--ratio", options.map.ratio, "ratio of the cell sides of two neighbouring scales").rare();
   command.number("--noise", options.map.noise, "noise floor of every Gaussian [m]; 0 = resolution / 20").rare();
   addBudgetOptions(command, options.budget);
-  addOnlineOptions(command, options.online);
+  addOnlineOptions(command, options.online, as_in_paper);
   addScanOptions(command, options.input);
   command
       .text("--max-memory", options.max_memory,

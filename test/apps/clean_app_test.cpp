@@ -142,6 +142,32 @@ TEST_F(CleanApp, TakesTheNoiseOfTheDepths) {
   expectUsageError("depth-noise", {"clean", scans(), "--labels", "--depth-noise", "-0.1", "0"});
 }
 
+TEST_F(CleanApp, TakesTheConstantsOfItsRules) {
+  const auto removed = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"clean", scans(), "--labels", "--json"});
+    return Json::parse(succeed(more))["removed"].get<int>();
+  };
+  const int by_default = removed({});
+  ASSERT_GT(by_default, 100);
+  EXPECT_EQ(removed({"--hit", "0.85", "--miss", "0.4", "--tolerance", "0.3", "--clearance", "0.35", "--link", "0.2",
+                     "--reach", "0.5"}),
+            by_default);
+  EXPECT_EQ(removed({"--hit", "5"}), 0);  // three hits weigh more than five misses
+  EXPECT_EQ(removed({"--miss", "0.1"}), 0);
+  EXPECT_EQ(removed({"--tolerance", "7"}), 0);  // no wall is so far behind the post
+  EXPECT_EQ(removed({"--clearance", "6"}), 0);
+  EXPECT_GT(removed({"--link", "2"}), by_default);
+  // With this clearance, the beams free only a part of the post, and the reach finds the rest.
+  EXPECT_LT(removed({"--clearance", "3", "--reach", "0"}), removed({"--clearance", "3", "--reach", "2"}));
+  for (const std::vector<std::string>& bad : std::vector<std::vector<std::string>>{{"--hit", "0"},
+                                                                                   {"--miss", "nan"},
+                                                                                   {"--tolerance", "-1"},
+                                                                                   {"--clearance", "-1"},
+                                                                                   {"--link", "201"},
+                                                                                   {"--reach", "-1"}})
+    expectUsageError(bad[0], {"clean", scans(), "--labels", bad[0], bad[1]});
+}
+
 TEST_F(CleanApp, WritesTheSameBytesOnAnyNumberOfThreads) {
   for (const std::string threads : {"1", "2"})
     succeed({"clean", scans(), "--merged", own(threads + ".pcd"), "--threads", threads});

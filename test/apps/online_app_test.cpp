@@ -6,6 +6,9 @@
 #include "apps/app_fixture.h"
 #include "apps/passing_post.h"
 #include "gaussmap/io/gmap/map_file.h"
+#include "gaussmap/io/scans/file_scans.h"
+#include "gaussmap/mapping/online/online_mapper.h"
+#include "io/gmap/map_equality.h"
 #include "io/pcd/removed_pcd.h"
 
 namespace gaussmap::test {
@@ -161,6 +164,105 @@ TEST_F(OnlineApp, WritesTheSameBytesOnAnyNumberOfThreads) {
   EXPECT_EQ(contentsOf(own("r1.gmap")), contentsOf(own("r2.gmap")));
 }
 
+TEST_F(OnlineApp, WorksAsInThePaper) {
+  const std::string paper = own("paper.gmap");
+  std::vector<std::string> words = {"pcd2map", scene("scans"), "-o", paper, "--online", "--as-in-paper"};
+  succeed(words);
+  const Json info = infoOf(paper);
+  EXPECT_EQ(info["takes_scans"], false);
+  EXPECT_EQ(info["resolution"], 0.1);
+  EXPECT_EQ(info["ratio"], 10);
+  EXPECT_EQ(info["scales"].size(), 3u);
+  EXPECT_EQ(info["metadata"]["history"].back()["as_in_paper"], true);
+  EXPECT_FALSE(infoOf(scene("map.gmap"))["metadata"]["history"].back().contains("as_in_paper"));
+  // The map is that of the preset in C++, apart from the noise floor and the budget, which have their defaults in both.
+  OnlineMapper<3> mapper(OnlineOptions::yguel2009(3));
+  const FoundScans found = findScans({scene("scans")});
+  for (std::size_t i = 0; i < found.scans.size(); ++i) mapper.add(found.scans.read(i));
+  EXPECT_TRUE(sameMap(load(paper), mapper.map()));
+}
+
+TEST_F(OnlineApp, OptionsThatAreGivenOverrideThePaper) {
+  const std::string exact = own("exact.gmap"), coarse = own("coarse.gmap");
+  succeed({"pcd2map", "--learning-rate", "sample-mean", scene("scans"), "-o", exact, "--online", "--as-in-paper"});
+  EXPECT_EQ(infoOf(exact)["takes_scans"], true);
+  succeed(
+      {"pcd2map", scene("scans"), "-o", coarse, "--as-in-paper", "--online", "--resolution", "0.4", "--ratio", "4"});
+  EXPECT_EQ(infoOf(coarse)["resolution"], 0.4);
+  EXPECT_EQ(infoOf(coarse)["ratio"], 4);
+  EXPECT_EQ(infoOf(coarse)["takes_scans"], false);
+  expectUsageError("--online", {"pcd2map", scene("scans"), "-o", own("x.gmap"), "--as-in-paper"});
+}
+
+TEST_F(OnlineApp, WorksAsInThePaperOnSimulatedDrives) {
+  succeed(
+      {"simulate", "street", "--moving", "--scans", "10", "--rings", "16", "--columns", "240", "-o", own("street")});
+  succeed({"simulate", "plan", "--scans", "20", "--columns", "181", "-o", own("plan")});
+  for (const std::string threads : {"1", "2"}) {
+    succeed({"pcd2map", own("street") + "/scans", "-o", own("street" + threads + ".gmap"), "--online", "--as-in-paper",
+             "--stats", own("street" + threads + ".csv"), "--threads", threads});
+    succeed({"pcd2map", own("plan") + "/scans", "-o", own("plan" + threads + ".gmap"), "--planar", "--online",
+             "--as-in-paper", "--threads", threads});
+  }
+  EXPECT_EQ(contentsOf(own("street1.gmap")), contentsOf(own("street2.gmap")));
+  EXPECT_EQ(contentsOf(own("plan1.gmap")), contentsOf(own("plan2.gmap")));
+  const Json street = infoOf(own("street1.gmap")), plan = infoOf(own("plan1.gmap"));
+  EXPECT_EQ(street["resolution"], 0.1);
+  EXPECT_EQ(plan["resolution"], 0.05);
+  for (const Json& info : {street, plan}) {
+    EXPECT_EQ(info["metadata"]["history"].back()["as_in_paper"], true);
+    // One refinement every ten scans, with four clusters for each of the two coarse scales.
+    const std::size_t refinements = info == plan ? 2 : 1;
+    for (std::size_t s = 1; s < 3; ++s) {
+      const auto gaussians = info["scales"][s]["gaussians"].get<std::size_t>();
+      const auto cells = info["scales"][s]["cells"].get<std::size_t>();
+      EXPECT_GT(gaussians, cells);
+      EXPECT_LE(gaussians, cells + 4 * refinements);
+    }
+  }
+}
+
+TEST_F(OnlineApp, EveryConstantChangesTheMap) {
+  const std::vector<std::string> paper = {"pcd2map",       scene("scans"), "--online",
+                                          "--as-in-paper", "--resolution", "0.2"};
+  const std::vector<std::vector<std::string>> constants = {
+      {"--slowest-rate", "0.01"}, {"--fastest-rate", "0.1"}, {"--max-log-odds", "2"},
+      {"--forget-below", "-1"},   {"--max-samples", "2"},    {"--hit", "0.5"},
+      {"--miss", "0.3"},          {"--tolerance", "1"},      {"--clearance", "2"}};
+  const auto bytesWith = [&](std::vector<std::string> words, const std::vector<std::string>& more) {
+    words.insert(words.end(), {"-o", own("one.gmap"), "--force"});
+    words.insert(words.end(), more.begin(), more.end());
+    succeed(words);
+    return load(own("one.gmap"));
+  };
+  const GaussianMapOctree as_in_paper = bytesWith(paper, {});
+  for (const std::vector<std::string>& constant : constants)
+    EXPECT_FALSE(sameMap(as_in_paper, bytesWith(paper, constant))) << constant[0];
+  // What the object hid lies on the far side of the room: it takes both a long link and a long reach to get there.
+  const auto removed = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = onlineTo(own("usual.gmap"), {"--force", "--removed", own("usual.pcd")});
+    words.insert(words.end(), more.begin(), more.end());
+    succeed(words);
+    return readRemoved(own("usual.pcd")).size();
+  };
+  const std::size_t by_default = removed({});
+  EXPECT_EQ(removed({"--link", "0.2", "--reach", "0.5", "--tolerance", "0.3", "--clearance", "0.35"}), by_default);
+  EXPECT_EQ(removed({"--link", "2"}), by_default);
+  EXPECT_EQ(removed({"--reach", "4"}), by_default);
+  EXPECT_GT(removed({"--link", "2", "--reach", "4"}), by_default);
+}
+
+TEST_F(OnlineApp, OnlyTheLongHelpNamesTheConstants) {
+  const std::vector<std::string> names = {"--slowest-rate", "--fastest-rate", "--max-log-odds", "--forget-below",
+                                          "--max-samples",  "--hit",          "--miss",         "--tolerance",
+                                          "--clearance",    "--link",         "--reach",        "--as-in-paper"};
+  const std::string brief = succeed({"pcd2map", "--help"}), all = succeed({"pcd2map", "--help-all"});
+  for (const std::string& name : names) {
+    EXPECT_EQ(brief.find(name), std::string::npos) << name;
+    EXPECT_NE(all.find(name), std::string::npos) << name;
+  }
+}
+
 TEST_F(OnlineApp, LearnsByOccupancyButCannotGiveThatBack) {
   succeed(onlineTo(own("map.gmap"), {"--learning-rate", "occupancy", "--removed", own("removed.pcd")}));
   EXPECT_EQ(infoOf(own("map.gmap"))["takes_scans"], false);
@@ -216,6 +318,18 @@ TEST_F(OnlineApp, SaysWhatIsWrongWithItsOptions) {
                                                          {"--max-ranges", "5"},
                                                          {"--refine-every", "2"},
                                                          {"--refine-cells", "2"},
+                                                         {"--as-in-paper"},
+                                                         {"--slowest-rate", "0.001"},
+                                                         {"--fastest-rate", "0.1"},
+                                                         {"--max-log-odds", "5"},
+                                                         {"--forget-below", "1"},
+                                                         {"--max-samples", "5"},
+                                                         {"--hit", "1"},
+                                                         {"--miss", "1"},
+                                                         {"--tolerance", "1"},
+                                                         {"--clearance", "1"},
+                                                         {"--link", "1"},
+                                                         {"--reach", "1"},
                                                          {"--stats", file},
                                                          {"--removed", file}};
   for (const std::vector<std::string>& option : without) {
@@ -223,11 +337,31 @@ TEST_F(OnlineApp, SaysWhatIsWrongWithItsOptions) {
     words.insert(words.end(), option.begin(), option.end());
     expectUsageError("--online", words);
   }
-  const std::vector<std::vector<std::string>> bad = {
-      {"--learning-rate", "fast"}, {"--occupancy-every", "0"},   {"--occupancy-samples", "all"},
-      {"--look-back", "-1"},       {"--no-return-is-free", "0"}, {"--no-return-is-free", "nan"},
-      {"--max-ranges", "5,-1"},    {"--refine-every", "-1"},     {"--refine-cells", "-1"}};
+  const std::vector<std::vector<std::string>> bad = {{"--learning-rate", "fast"},
+                                                     {"--occupancy-every", "0"},
+                                                     {"--occupancy-samples", "all"},
+                                                     {"--look-back", "-1"},
+                                                     {"--no-return-is-free", "0"},
+                                                     {"--no-return-is-free", "nan"},
+                                                     {"--max-ranges", "5,-1"},
+                                                     {"--refine-every", "-1"},
+                                                     {"--refine-cells", "-1"},
+                                                     {"--slowest-rate", "0"},
+                                                     {"--slowest-rate", "0.06"},
+                                                     {"--fastest-rate", "2"},
+                                                     {"--max-log-odds", "0"},
+                                                     {"--max-log-odds", "11"},
+                                                     {"--forget-below", "nan"},
+                                                     {"--forget-below", "-11"},
+                                                     {"--max-samples", "-1"},
+                                                     {"--hit", "0"},
+                                                     {"--miss", "-1"},
+                                                     {"--tolerance", "-1"},
+                                                     {"--clearance", "nan"},
+                                                     {"--link", "201"},
+                                                     {"--reach", "-0.1"}};
   for (const std::vector<std::string>& option : bad) expectUsageError(option[0], onlineTo(out, option));
+  expectUsageError("--forget-below", onlineTo(out, {"--max-log-odds", "2", "--forget-below", "-2.5"}));
   for (const std::vector<std::string>& limit : std::vector<std::vector<std::string>>{
            {"--max-gaussians", "100000"}, {"--max-bytes", "1M"}, {"--max-error", "1"}, {"--cost", "runnalls"}})
     expectUsageError("--online", onlineTo(out, limit));

@@ -92,6 +92,7 @@ WrittenMap buildOnline(const Pcd2mapOptions& options, const Scans& scans, const 
 
   Json step = historyOf(scans, counts, options.slice);
   step["online"] = true;
+  if (online.as_in_paper) step["as_in_paper"] = true;
   step["budget"] = options.budget.budget;
   step["deleted"] = deleted;
   addHistory(task.metadata, step);

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "commands/pcd2map/online_options.h"
 
+#include <cmath>
 #include <map>
 
 #include "commands/depth_noise.h"
+#include "commands/evidence_options.h"
 #include "common/command.h"
+#include "core/number_text.h"
 
 namespace gaussmap::app {
 namespace {
@@ -16,7 +19,8 @@ const std::map<std::string, OccupancySamples> kSamples = {{"mean", OccupancySamp
 
 }  // namespace
 
-void addOnlineOptions(Command& command, OnlineInput& input) {
+void addOnlineOptions(Command& command, OnlineInput& input, const Option& as_in_paper) {
+  constexpr double kMaxLogOdds = kMaxOccupancy;
   OnlineOptions& options = input.options;
   const Option online = command.flag("--online", input.on,
                                      "add scans one by one: learn occupancy from range images, delete what has moved");
@@ -43,13 +47,38 @@ void addOnlineOptions(Command& command, OnlineInput& input) {
            command.text("--removed", input.removed, "PCD file to write: the deleted clusters and their evidence"),
        })
     option.needs(online).group("With --online");
+  as_in_paper.needs(online).group("With --online");
+  std::vector<Option> constants = {
+      command.number("--slowest-rate", options.slowest_rate, 1e-9, 1.0,
+                     "--learning-rate occupancy: weight of a new point where the map is certain, eps_min of eq. (5)"),
+      command.number("--fastest-rate", options.fastest_rate, 1e-9, 1.0,
+                     "--learning-rate occupancy: weight of a new point where the map is uncertain, eps_max of eq. (5)"),
+      command.number("--max-log-odds", options.occupancy.max_log_odds, 0.1, kMaxLogOdds,
+                     "limit of the log-odds of a cluster, o_max of eq. (5)"),
+      command.number("--forget-below", options.forget_below, -kMaxLogOdds, kMaxLogOdds,
+                     "clusters whose log-odds fall below this value are deleted"),
+      command.number("--max-samples", options.max_samples, 0, 1000000000,
+                     "--occupancy-samples random: maximum samples per cluster, 0 = no limit but eq. (1)"),
+  };
+  const std::vector<Option> evidence =
+      addEvidenceOptions(command, {options.occupancy, options.visibility, options.link, options.reach});
+  constants.insert(constants.end(), evidence.begin(), evidence.end());
+  for (const Option& option : constants) option.needs(online).group("With --online: constants");
   command.files({"--stats"}, {".csv"});
   command.files({"--removed"}, {".pcd"});
 }
 
-void checkOnline(const OnlineInput& input, const BudgetInput& budget, const Output& map,
+void checkOnline(const OnlineInput& input, const BudgetInput& budget, double resolution, const Output& map,
                  const std::vector<std::filesystem::path>& inputs) {
   if (!input.on) return;
+  const OnlineOptions& options = input.options;
+  if (options.slowest_rate > options.fastest_rate)
+    throw UsageError("--slowest-rate: must not exceed --fastest-rate, which is " +
+                     detail::numberText(options.fastest_rate));
+  if (std::abs(options.forget_below) > options.occupancy.max_log_odds)
+    throw UsageError("--forget-below: must lie between -M and M, with M = --max-log-odds = " +
+                     detail::numberText(options.occupancy.max_log_odds));
+  checkLink(options.link, resolution);
   if (!budget.max_gaussians.empty() || !budget.max_bytes.empty() || budget.max_error > 0.0)
     throw UsageError("--online: supports only --budget; use gaussmap refine afterwards for another limit");
   if (budget.cost) throw UsageError("--cost: not with --online");

@@ -15,16 +15,18 @@ namespace gaussmap::app {
 struct OnlineInput {
   bool on = false;
   OnlineOptions options;
+  bool as_in_paper = false;         // the options are those of the paper, unless others are given
   std::vector<double> depth_noise;  // empty: that of the kind of sensor
   bool keep = false;                // delete nothing
   std::string stats;                // CSV file
   std::string removed;              // PCD file
 };
-void addOnlineOptions(Command& command, OnlineInput& input);
+/// `as_in_paper`: the option --as-in-paper, which needs --online too.
+void addOnlineOptions(Command& command, OnlineInput& input, const Option& as_in_paper);
 
 /// Throws UsageError for options that on-line mapping does not support, and for outputs that cannot be written. `map`
-/// is the main output.
-void checkOnline(const OnlineInput& input, const BudgetInput& budget, const Output& map,
+/// is the main output, `resolution` the side of its finest cells [m].
+void checkOnline(const OnlineInput& input, const BudgetInput& budget, double resolution, const Output& map,
                  const std::vector<std::filesystem::path>& inputs);
 
 /// Returns the options of the mapper, including those that other options of the command set.

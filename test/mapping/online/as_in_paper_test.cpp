@@ -44,12 +44,15 @@ double meanLogOdds(const GaussianMap<3>& map, double x0, double x1) {
 /// Twelve scans of a wall: a box leaves after the first three, another box comes for one scan, and behind the sensor
 /// lies a bent wall that only the first four scans see.
 std::vector<Scan> driveScans() {
+  LidarOptions sparse = wallLidar();
+  sparse.rings = 20;
+  sparse.columns = 360;
   std::vector<Scan> scans;
   for (int i = 0; i < 12; ++i) {
     std::vector<double> boxes = {2.5};
     if (i < 3) boxes.push_back(-0.5);
     if (i == 6) boxes.push_back(-3.0);
-    Scan scan = boxScan(boxes);
+    Scan scan = boxScan(boxes, sparse);
     if (i < 3)  // a pole hangs from the box down to where later scans see nothing
       for (int k = 0; k < 60; ++k) scan.points.push_back({5.1, 0.0, -0.6 - 0.01 * k});
     if (i < 4)
@@ -97,6 +100,22 @@ TEST(OnlineAsInPaper, EverySettingThatIsLostChangesTheMap) {
     OnlineOptions options = paperOptions();
     lose(options);
     EXPECT_FALSE(sameMap(map, mapOf(scans, options))) << name;
+  }
+}
+
+TEST(OnlineAsInPaper, TheFactorOfTheErrorChangesTheErrors) {
+  const std::vector<Scan> scans = driveScans();
+  const auto errors = [&](ErrorFactor factor) {
+    OnlineOptions options = paperOptions();
+    options.error_factor = factor;
+    OnlineMapper<3> mapper(options);
+    for (int i = 0; i < 3; ++i) mapper.add(scans[std::size_t(i)]);
+    return mapper.add(scans[3]).errors;
+  };
+  const std::vector<double> paper = errors(OnlineOptions::yguel2009(3).error_factor), plain = errors(ErrorFactor::One);
+  for (std::size_t scale = 1; scale < 3; ++scale) {
+    EXPECT_LT(paper[scale], (1.0 - 5e-4) * plain[scale]);
+    EXPECT_GT(paper[scale], (1.0 - 5e-2) * plain[scale]);
   }
 }
 

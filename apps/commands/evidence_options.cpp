@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/evidence_options.h"
+
+#include "common/usage.h"
+
+namespace gaussmap::app {
+
+std::vector<Option> addEvidenceOptions(Command& command, const EvidenceConstants& constants) {
+  constexpr double kLeast = 1e-3, kMost = 10.0, kFarthest = 1e6;
+  return {
+      command.number("--hit", constants.occupancy.hit, kLeast, kMost,
+                     "log-odds that a scan which hits a cell adds to the cell"),
+      command.number("--miss", constants.occupancy.miss, kLeast, kMost,
+                     "log-odds that a scan which sees through a cell takes from the cell"),
+      command.number(
+          "--tolerance", constants.visibility.tolerance, 0.0, kFarthest,
+          "a ray sees through a cell only if it ends more than this behind it [m]; default: 0.3, or 15 cells "
+          "if less"),
+      command.number("--clearance", constants.visibility.clearance, 0.0, kFarthest,
+                     "a ray sees through a cell only if the cell is this far from the surface where the ray ends [m]; "
+                     "default: 0.35, "
+                     "or 17.5 cells if less"),
+      command.number("--link", constants.link, 0.0, kFarthest,
+                     "maximum distance of neighbouring cells of an object [m]; default: 0.2, or 10 cells if less"),
+      command.number("--reach", constants.reach, 0.0, kFarthest,
+                     "how far an object can reach beyond its freed cells [m]; default: 0.5, or 25 cells if less"),
+  };
+}
+
+void checkLink(const std::optional<double>& link, double resolution) {
+  constexpr double kMaxCells = 1000.0;
+  if (link && *link > kMaxCells * resolution)
+    throw UsageError("--link: must be at most 1000 cells; use a smaller value or a larger --resolution");
+}
+
+}  // namespace gaussmap::app
