@@ -4,6 +4,7 @@
 #include <charconv>
 #include <iostream>
 #include <map>
+#include <stdexcept>
 
 #include "common/command.h"
 #include "common/report.h"
@@ -18,7 +19,8 @@ const std::map<std::string, GaussianDistance> kDistances = {{"kl", GaussianDista
                                                             {"symmetric-kl", GaussianDistance::SymmetricKL},
                                                             {"bhattacharyya", GaussianDistance::Bhattacharyya},
                                                             {"wasserstein", GaussianDistance::Wasserstein}};
-const std::map<std::string, MergeCost> kCosts = {{"volume", MergeCost::Volume}, {"runnalls", MergeCost::Runnalls}};
+const std::map<std::string, ClusterSeed> kSeedRules = {{"parent", ClusterSeed::ParentCovariance},
+                                                       {"datum", ClusterSeed::InputGaussian}};
 
 template <int D>
 bool isUnrefined(const GaussianMap<D>& map) {
@@ -27,7 +29,56 @@ bool isUnrefined(const GaussianMap<D>& map) {
   return true;
 }
 
+/// The options of RefineMethod::Insert. The seed is an older option, added by addBudgetOptions().
+void addInsertOptions(Command& command, RefineOptions& refine) {
+  const RefineOptions paper = RefineOptions::yguel2009();
+  const std::string group = "With --method insert";
+  command
+      .number("--queue", refine.queue, 0, 1000000000,
+              "cells refined at a time; 0 = 1/250 of the cells of the scale, at least 4 (paper: " +
+                  std::to_string(paper.queue) + ")")
+      .group(group);
+  command
+      .number("--max-swaps", refine.max_swaps, 0, 1000000,
+              "maximum number of swaps of clusters after each insertion (Algorithm 2)")
+      .group(group);
+  command
+      .choiceOf(
+          "--seed-rule", refine.seed_rule, kSeedRules,
+          R"(shape of a new cluster: that of the cluster around it (parent), or of the finer Gaussian at its place,
+                as in the paper (datum))")
+      .group(group);
+  command
+      .flag("--only-occupied", refine.only_occupied,
+            "add clusters only to cells with a mean probability of occupancy above 0.5, as in the paper")
+      .group(group);
+  command
+      .flag("--learning-factor", refine.learning_factor,
+            "multiply the error of eq. (6) by 1 - learning rate of the finer Gaussians, as in the paper")
+      .group(group);
+}
+
 }  // namespace
+
+const std::map<std::string, MergeCost>& mergeCosts() {
+  static const std::map<std::string, MergeCost> costs = {
+      {"volume", MergeCost::Volume}, {"runnalls", MergeCost::Runnalls}, {"kl", MergeCost::KL}};
+  return costs;
+}
+
+std::string wordOf(MergeCost cost) {
+  for (const auto& [word, one] : mergeCosts())
+    if (one == cost) return word;
+  throw std::logic_error("a merge cost without a word");
+}
+
+void refineAsInPaper(BudgetInput& input) {
+  const int threads = input.refine.threads;
+  input.refine = RefineOptions::yguel2009();
+  input.refine.threads = threads;
+  input.method = "insert";
+  input.as_in_paper = true;
+}
 
 std::uintmax_t amountOf(const std::string& option, std::string_view text, bool suffix) {
   std::uintmax_t value = 0;
@@ -84,13 +135,14 @@ void measureFile(Budget& budget, const MapMetadata& metadata, int threads) {
 }
 
 std::string detailsOf(const BudgetInput& input, Json step) {
+  if (input.as_in_paper) step["as_in_paper"] = true;
   if (input.cost) step["cost"] = *input.cost;
   if (!input.max_gaussians.empty()) step["max_gaussians"] = input.max_gaussians;
   return step.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 MergeCost mergeCost(const BudgetInput& input) {
-  return input.cost ? kCosts.at(*input.cost) : MergeCost::Volume;
+  return input.cost ? mergeCosts().at(*input.cost) : MergeCost::Volume;
 }
 
 Option addLimitOptions(Command& command, BudgetInput& input) {
@@ -110,8 +162,16 @@ Option addLimitOptions(Command& command, BudgetInput& input) {
 void addCostOption(Command& command, BudgetInput& input) {
   command
       .choice(
-          "--cost", input.cost, Command::wordsOf(kCosts),
-          "what to merge first: the pair that adds least volume (default), or that loses least likelihood (runnalls)")
+          "--cost", input.cost, Command::wordsOf(mergeCosts()),
+          R"(which pair to merge first: the one that adds least volume (default), that loses least likelihood (runnalls),
+          or that has the smallest KL divergence, as in the paper (kl))")
+      .rare();
+}
+
+void addSmooth(Command& command, bool& smooth) {
+  command
+      .flag("--smooth", smooth,
+            "after the merges, run the clustering (k-means with KL divergence) once per cell, as in the paper")
       .rare();
 }
 
@@ -128,6 +188,7 @@ void addBudgetOptions(Command& command, BudgetInput& input) {
               "distance from a Gaussian to a cluster with --method insert (default: kl, the KL divergence)")
       .rare();
   command.seed(input.refine.seed, "seed of the random swaps of --method insert").rare();
+  addInsertOptions(command, input.refine);
 }
 
 void checkBudget(const BudgetInput& input) {
@@ -136,6 +197,17 @@ void checkBudget(const BudgetInput& input) {
     throw UsageError("--method insert: supports only --budget and --max-gaussians");
   if (input.method == "insert" && input.cost) throw UsageError("--cost: only for --method agglomerate");
   if (input.method != "insert" && input.distance) throw UsageError("--distance: only for --method insert");
+  const std::string option = insertOption(input);
+  if (input.method != "insert" && !option.empty()) throw UsageError(option + ": only for --method insert");
+}
+
+std::string insertOption(const BudgetInput& input) {
+  const RefineOptions usual, &given = input.refine;
+  if (given.queue != usual.queue) return "--queue";
+  if (given.max_swaps != usual.max_swaps) return "--max-swaps";
+  if (given.seed_rule != usual.seed_rule) return "--seed-rule";
+  if (given.only_occupied) return "--only-occupied";
+  return given.learning_factor ? "--learning-factor" : "";
 }
 
 template <int D>

@@ -21,6 +21,9 @@ const Help kHausdorffHelp = {
 grows with the number of samples, so compare maxima only at equal --samples, or compare quantiles. The rows "2 sigma"
 use only the samples within 2 standard deviations of their means.
 
+--as-in-paper: --samples-in cell --at-least 0, as in Yguel et al. 2009. The number of samples is then exactly
+proportional to the volume of the Gaussians. Options that are also given override these settings.
+
 Clouds are combined as in pcd2map. A PLY file with faces is a mesh, without faces a cloud. For a mesh, map->ref are
 exact distances to its surface, and ref->map are the distances of --samples points on it. Another map is sampled in
 the same way at the same scale, so the distance of two equal maps is 0.
@@ -94,9 +97,12 @@ void run(const HausdorffCommand& command) {
 }
 
 void addSampleOptions(Command& command, SampleOptions& samples) {
+  command.preset(
+      "--as-in-paper", [&samples] { samples = SampleOptions::yguel2009(); },
+      "sample the Gaussians as in Yguel et al. 2009");
   command.number("--samples", samples.samples, 1, 100000000,
                  "number of samples per scale, divided among its Gaussians");
-  command.number("--at-least", samples.at_least, 1, 1000000, "minimum number of samples per Gaussian").rare();
+  command.number("--at-least", samples.at_least, 0, 1000000, "minimum number of samples per Gaussian").rare();
   command
       .choiceOf("--sampling", samples.share, kShares,
                 "samples per Gaussian: in proportion to its volume, or to its weight (mass)")

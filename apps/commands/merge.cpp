@@ -3,8 +3,10 @@
 #include "gaussmap/editing/merge_maps.h"
 
 #include <cmath>
+#include <map>
 #include <memory>
 
+#include "commands/budget.h"
 #include "commands/commands.h"
 #include "commands/map_task.h"
 #include "commands/motion.h"
@@ -20,15 +22,24 @@ struct MergeCommand : MapTaskOptions {
   std::vector<std::string> maps;
   MotionInput motion;
   bool resample = false, exact = false;
+  MergeMapsOptions merging;
+  bool as_in_paper = false;
 };
+
+const std::map<std::string, MergeMethod> kMergeMethods = {{"finer-scales", MergeMethod::FinerScales},
+                                                          {"clusters", MergeMethod::Clusters}};
 
 const Help kMergeHelp = {
     "Merge several maps into one",
     R"(gaussmap merge monday.gmap tuesday.gmap -o both.gmap --transform "12.5 -3 0 0 0 0.7071 0.7071")",
     R"(If all maps have exact moments, the finest scale of the result is the same as in one map of all their scans.
 Final maps, and maps that are or were moved or resampled, have no exact moments. If there is such a map, the result
-holds Gaussians only; --exact refuses it. Compressed maps cannot be merged. The first map does not move. For each of
-the others, in the same order, give --transform with its pose in the frame of the first map.)"};
+holds Gaussians only; --exact refuses it. Compressed maps need --method clusters. The first map does not move. For each
+of the others, in the same order, give --transform with its pose in the frame of the first map.
+
+--as-in-paper: --method clusters --cost kl --smooth, as in Yguel et al. 2009. In every cell that both maps have, and at
+every scale, the pair of clusters with the smallest KL divergence is merged, until as many are left as the map with more
+of them has. Then the clustering runs once. Options that are also given override these settings.)"};
 
 std::string gridOf(const MapOptions& options) {
   return "cells of " + Json(options.resolution).dump() + " m, ratio " + std::to_string(options.ratio) + ", " +
@@ -75,7 +86,7 @@ GaussianMap<D> merged(const MergeCommand& command, const Motions& motions, MapTa
       requireExact(next, paths[i], true);
     if (to.grid || !motions.poses.empty())
       next = transformMap<D>(next, motions.poses.empty() ? Pose() : motions.poses[i - 1], to);
-    MergeMapsOptions options;
+    MergeMapsOptions options = command.merging;
     options.threads = command.threads;
     merged = mergeMaps<D>(merged, next, options);
   }
@@ -93,6 +104,11 @@ void run(const MergeCommand& command) {
   const GaussianMap<D> map = merged<D>(command, motionsOf(command.motion, to_move), task);
 
   Json step = {{"maps", count}, {"exact", map.acceptsScans()}};
+  if (command.as_in_paper) step["as_in_paper"] = true;
+  // Not "method", by which pcd2map --update finds the last refinement.
+  if (command.merging.method == MergeMethod::Clusters) step["merge_method"] = "clusters";
+  if (command.merging.merge_cost != MergeMapsOptions().merge_cost) step["cost"] = wordOf(command.merging.merge_cost);
+  if (command.merging.smooth) step["smooth"] = true;
   if (!command.motion.transforms.empty()) step["transforms"] = command.motion.transforms;
   if (!command.motion.file.empty()) step["transform_file"] = command.motion.file;
   if (!command.motion.covariance.empty()) step["pose_covariance"] = command.motion.covariance;
@@ -120,6 +136,24 @@ void addMerge(CLI::App& app) {
   command.flag("--resample", options->resample,
                "convert maps with other cells, ratio, scales or noise floor to those of the first map");
   command.flag("--exact", options->exact, "refuse maps that cannot be merged exactly");
+  command.preset(
+      "--as-in-paper",
+      [options] {
+        options->merging = MergeMapsOptions::yguel2009();
+        options->as_in_paper = true;
+      },
+      "use the settings of Yguel et al. 2009");
+  command
+      .choiceOf("--method", options->merging.method, kMergeMethods,
+                R"(coarse scales: from the finer scale, with the number of clusters fixed per scale (finer-scales),
+                or from the clusters of both maps, with the number fixed per cell, as in the paper (clusters))")
+      .rare();
+  command
+      .choiceOf("--cost", options->merging.merge_cost, mergeCosts(),
+                R"(which pair to merge first: the one that adds least volume, that loses least likelihood (runnalls),
+                or that has the smallest KL divergence, as in the paper (kl))")
+      .rare();
+  addSmooth(command, options->merging.smooth);
   addRunOptions(command, *options);
   command.files({"maps"}, {".gmap", ".pcd"});
   command.onRun([options] { forMap(options->maps.front(), [&](auto dimensions) { run<dimensions()>(*options); }); });

@@ -19,7 +19,11 @@ const Help kRefineHelp = {
     "Change the number of Gaussians at the coarse scales of a map",
     "gaussmap refine street.gmap -o fine.gmap --budget 4",
     R"(The coarse scales are rebuilt from the finest scale. The result equals that of pcd2map with the same budget and
-seed. A compressed map cannot be refined, because its finest scale is incomplete.)"};
+seed. A compressed map cannot be refined, because its finest scale is incomplete.
+
+--as-in-paper: inserts clusters as Yguel et al. 2009 print it, see --method insert. 4 cells are refined at a time, a new
+cluster starts as a copy of a finer Gaussian, and free cells get no more clusters. Options that are also given override
+these settings. --budget is not one of them.)"};
 
 template <int D>
 void run(RefineCommand command) {
@@ -40,6 +44,8 @@ void addRefine(CLI::App& app) {
   auto options = std::make_shared<RefineCommand>();
   Command command(app, "refine", kRefineHelp);
   addMapToMap(command, *options);
+  command.preset(
+      "--as-in-paper", [options] { refineAsInPaper(options->budget); }, "use the settings of Yguel et al. 2009");
   addBudgetOptions(command, options->budget);
   addRunOptions(command, *options);
   command.onRun([options] { forMap(options->map, [&](auto dimensions) { run<dimensions()>(*options); }); });

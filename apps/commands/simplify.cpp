@@ -17,20 +17,32 @@ namespace {
 struct SimplifyCommand : MapTaskOptions {
   BudgetInput limit;
   bool has_budget = false;
+  bool smooth = false;
 };
+
+/// Sets the options of the paper. The limit stays as it is.
+void simplifyAsInPaper(SimplifyCommand& command) {
+  const SimplifyOptions paper = SimplifyOptions::yguel2009();
+  command.limit.cost = wordOf(paper.merge_cost);
+  command.limit.as_in_paper = true;
+  command.smooth = paper.smooth;
+}
 
 const Help kSimplifyHelp = {
     "Merge Gaussians of a map until it is small enough",
     "gaussmap simplify street.gmap -o small.gmap --max-gaussians 1=20000",
     R"(Needs one of --budget, --max-gaussians, --max-bytes and --max-error. Merges the Gaussians that the map has, so it
 also works on final and compressed maps. To rebuild the coarse scales from the finest scale, use gaussmap refine.
-Every cell keeps at least one Gaussian.)"};
+Every cell keeps at least one Gaussian.
+
+--as-in-paper: --cost kl --smooth, as in Yguel et al. 2009. Options that are also given override these settings.)"};
 
 /// Simplifies the map within the limit. Adds `step`, completed with the limit, to the history.
 template <int D>
 GaussianMap<D> simplified(const GaussianMap<D>& map, const SimplifyCommand& command, MapMetadata& metadata, Json step) {
   const BudgetInput& limit = command.limit;
-  const SimplifyOptions options{mergeCost(limit), command.threads};
+  SimplifyOptions options{mergeCost(limit), command.threads};
+  options.smooth = command.smooth;
   Budget budget = budgetOf(limit, map, 0);
   recordStep(metadata, simplifyStep(budget, options, detailsOf(limit, std::move(step))));
   measureFile(budget, metadata, options.threads);
@@ -62,8 +74,11 @@ void addSimplify(CLI::App& app) {
   auto options = std::make_shared<SimplifyCommand>();
   Command command(app, "simplify", kSimplifyHelp);
   addMapToMap(command, *options);
+  command.preset(
+      "--as-in-paper", [options] { simplifyAsInPaper(*options); }, "use the settings of Yguel et al. 2009");
   addLimitOptions(command, options->limit).hideDefault();
   addCostOption(command, options->limit);
+  addSmooth(command, options->smooth);
   addRunOptions(command, *options);
   command.onRun([options, command] {
     options->has_budget = command.isGiven("--budget");

@@ -56,8 +56,6 @@ class ClusterSetMerger {
       if (s + 1 < united.size()) link(static_cast<int>(s), united[s], united[s + 1]);
       scales.push_back(std::move(united[s].scale));
     }
-    for (std::size_t s = 1; s < scales.size(); ++s)
-      matchClusters<D>(scales[s - 1], scales[s], maps_.grid(), static_cast<int>(s));
     return GaussianMap<D>(maps_.grid().options(), std::move(scales));
   }
 
@@ -136,7 +134,7 @@ class ClusterSetMerger {
 
   /// Links the clusters of scale s to those of the next coarser scale. The parents of the old members have become parts
   /// of new clusters. A cluster is linked to the new cluster with the largest part of its weight, to the first of equal
-  /// ones.
+  /// ones. Coarse clusters do not change, so one of them can lose children, or all, to another one.
   void link(int s, UnitedScale<D>& finer, const UnitedScale<D>& coarser) const {
     std::map<std::pair<std::uint32_t, std::uint32_t>, double> weights;  // by cluster and parent
     const auto add = [&](const GaussianMap<D>& map, const std::vector<std::uint32_t>& new_of,

@@ -32,11 +32,14 @@ std::vector<double> coarserAreas(const MapScale<D>& finer, const std::vector<dou
 }
 
 /// Returns the number of occupied finest cells per Gaussian of scale s >= 1. A leaf of a compressed map has no finer
-/// cells. It counts as a surface straight through the cell, and its Gaussians get equal shares of it.
+/// cells. It counts as a surface straight through the cell, and its Gaussians get equal shares of it. A Gaussian without
+/// children in another cell counts as one finest cell.
 template <int D>
 std::vector<double> areasOf(const MapScale<D>& scale, const Grid<D>& grid, int s, const MapScale<D>& finer,
                             const std::vector<double>& finer_areas) {
   std::vector<double> areas = coarserAreas(finer, finer_areas, scale.gaussianCount());
+  for (double& area : areas)
+    if (area == 0.0) area = 1.0;
   const double across = std::pow(static_cast<double>(grid.cellsAlongSide(s)), D - 1);
   for (std::size_t cell = 0; cell < scale.keys.size(); ++cell) {
     if (scale.first_child[cell] != scale.first_child[cell + 1]) continue;

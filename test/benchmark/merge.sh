@@ -6,8 +6,11 @@
 # distances from samples of each scale to the points of the scans, and the wall times of the commands (best of three).
 # simplify: reduces a map with twenty Gaussians per coarse cell to a half, a quarter and a tenth of its Gaussians.
 # Compares the result with refine to the same number: the distances from samples of the scale to the reference.
+# as-in-paper: both with --as-in-paper (Yguel 2009, sec. 5.4), with its single settings, and with the defaults. Compares
+# merged maps with a map of all scans, and simplified maps with a refined map, with as many Gaussians each.
 # Usage: test/benchmark/merge.sh GAUSSMAP merge SCANS TRAJECTORY.tum
 #        test/benchmark/merge.sh GAUSSMAP simplify SCANS REFERENCE   (REFERENCE: a cloud, a mesh, or the scans)
+#        test/benchmark/merge.sh GAUSSMAP as-in-paper SCANS REFERENCE   (SCANS in one frame, with poses in their files)
 set -euo pipefail
 (($# == 4)) || { grep -A1 '^# Usage' "$0" | cut -c3- >&2; exit 2; }
 gaussmap=$1 what=$2 scans=$3 other=$4
@@ -21,6 +24,14 @@ row() {  # title, pair of values, pair of values to compare with
   awk -v w="$1" -v a="$2" -v b="$3" 'BEGIN { split(a, p, " "); split(b, q, " ");
     printf "%-44s %8s %8s   %8s %8s   %+6.1f %% %+6.1f %%\n", w, p[1], p[2], q[1], q[2],
            100 * (p[1] / q[1] - 1), 100 * (p[2] / q[2] - 1) }'
+}
+# map, scale, reference: the 99 % and 95 % quantiles and mean of the distances from samples of the scale
+quantiles() { "$gaussmap" hausdorff "$1" "$3" --scale "$2" | awk '$2 == "all" && /map->ref/ { print $5, $6, $7 }'; }
+compare() {  # title, map, map to compare with, scale
+  awk -v w="$1" -v n="$(gaussians "$2" "$4")" -v a="$(quantiles "$2" "$4" "$other")" \
+    -v b="$(quantiles "$3" "$4" "$other")" 'BEGIN { split(a, p, " "); split(b, q, " ")
+    printf "%-42s %7d %8s %8s %8s   %+6.1f %% %+6.1f %% %+6.1f %%\n", w, n, p[1], p[2], p[3],
+           100 * (p[1] / q[1] - 1), 100 * (p[2] / q[2] - 1), 100 * (p[3] / q[3] - 1) }'
 }
 shortest() {  # command...: the shortest time of three runs
   local TIMEFORMAT=%R
@@ -74,7 +85,39 @@ elif [[ $what == simplify ]]; then
         "$(distances "$work/refined.gmap" $scale "$other")"
     done
   done
+elif [[ $what == as-in-paper ]]; then
+  mapfile -t files < <(find "$scans" -maxdepth 1 -name '*.pcd' | sort -V)
+  half=$((${#files[@]} / 2))
+  "$gaussmap" pcd2map "${files[@]:0:half}" -o "$work/a.gmap"
+  "$gaussmap" pcd2map "${files[@]:half}" -o "$work/b.gmap"
+  "$gaussmap" pcd2map "${files[@]}" -o "$work/all.gmap" --budget 20
+  refined() {  # map with the numbers of Gaussians: a map of all scans with the same numbers
+    local limits=() scale
+    for scale in 1 2; do limits+=(--max-gaussians "$scale=$(gaussians "$1" $scale)"); done
+    "$gaussmap" refine "$work/all.gmap" -o "$work/refined.gmap" --force "${limits[@]}" >/dev/null
+  }
+  printf '\n%-42s %7s %8s %8s %8s   %s\n' "two halves merged" number "99 %" "95 %" "mean [m]" \
+    "compared with all scans"
+  for scale in 1 2; do
+    for how in "" "--as-in-paper" "--as-in-paper --smooth=false" "--as-in-paper --cost volume" \
+      "--as-in-paper --method finer-scales"; do
+      # shellcheck disable=SC2086
+      "$gaussmap" merge "$work/a.gmap" "$work/b.gmap" -o "$work/ab.gmap" --force $how >/dev/null
+      refined "$work/ab.gmap"
+      compare "scale $scale, ${how:-default}" "$work/ab.gmap" "$work/refined.gmap" $scale
+    done
+  done
+  printf '\n%-42s %7s %8s %8s %8s   %s\n' "20 Gaussians per cell simplified to 4" number "99 %" "95 %" "mean [m]" \
+    "compared with refine"
+  for scale in 1 2; do
+    for how in "" "--as-in-paper" "--as-in-paper --smooth=false" "--as-in-paper --cost volume"; do
+      # shellcheck disable=SC2086
+      "$gaussmap" simplify "$work/all.gmap" -o "$work/simple.gmap" --force --budget 4 $how >/dev/null
+      refined "$work/simple.gmap"
+      compare "scale $scale, ${how:-default}" "$work/simple.gmap" "$work/refined.gmap" $scale
+    done
+  done
 else
-  echo "test/benchmark/merge.sh: expected merge or simplify, found '$what'" >&2
+  echo "test/benchmark/merge.sh: expected merge, simplify or as-in-paper, found '$what'" >&2
   exit 2
 fi

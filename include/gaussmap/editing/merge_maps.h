@@ -49,16 +49,19 @@ struct GAUSSMAP_API MergeMapsOptions {
 /// With MergeMapsOptions::smooth, the old clusters of the cell are then assigned to the merged clusters again, by one
 /// run of KLKMeans. The run can drop clusters.
 ///
-/// Every cluster is the exact moment match of its children. With MergeMethod::Clusters, the children of merged clusters
-/// become children of the union. If a merged finer cluster has old parents in two unions, it joins the union with the
-/// larger part of its weight. The moment match is computed again afterwards, and a union without children is removed.
+/// Links: With MergeMethod::FinerScales, every cluster is the exact moment match of its children. With
+/// MergeMethod::Clusters, every cluster is the exact moment match of the old clusters that it unites, and their children
+/// become its children. A union of finer clusters, or a finest cell of both maps, can have old parents in two unions. It
+/// is linked to the one with the larger part of its weight. The other one keeps its Gaussian, but can have fewer children
+/// or none.
 ///
-/// Two halves of a drive were merged by both methods. docs/notes/merging.md gives the errors: those of
-/// MergeMapsOptions::yguel2009() are larger than those of the default, which are those of a map of all points.
+/// docs/notes/merging.md compares both methods by two halves of a drive. MergeMapsOptions::yguel2009() is less accurate
+/// than the default, which is about as accurate as a map of all points.
 ///
 /// Occupancy: In a finest cell that both maps have, the log-odds are added and limited to +-kMaxOccupancy. If only one
 /// map has occupancy, its log-odds are used, and the cells that exist only in the map without occupancy get
-/// kMaxOccupancy. The log-odds of a coarse cluster are the maximum over its children.
+/// kMaxOccupancy. The log-odds of a coarse cluster are the maximum over its children. With MergeMethod::Clusters, its
+/// old clusters decide instead: their maximum in each map, and the sum of these two.
 ///
 /// mergeMaps(a, b) and mergeMaps(b, a) have a bit-identical finest scale.
 ///
