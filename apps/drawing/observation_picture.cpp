@@ -115,7 +115,7 @@ void drawToSensor(Svg& svg, const ObservationFrame& frame, const ObservationPict
   const Vector<2> to = observation.sensor - observation.end;
   if (to.norm() == 0.0) return;
   const Vector<2> way = to.normalized(), side(-way.y(), way.x());
-  const double x = frame.left + 40 - 20 * way.x(), y = kFrameTop + kFrameSide - 40 + 20 * way.y();
+  const double x = frame.left + 48 - 20 * way.x(), y = kFrameTop + kFrameSide - 48 + 20 * way.y();
   const auto at = [&](double along, double across) -> Svg& {
     return svg << x + along * way.x() + across * side.x() << ' ' << y - along * way.y() - across * side.y();
   };
@@ -125,7 +125,7 @@ void drawToSensor(Svg& svg, const ObservationFrame& frame, const ObservationPict
   at(32, 5) << 'L';
   at(40, 0) << 'L';
   at(32, -5) << "'/>\n";
-  svg.text(frame.left + 72, kFrameTop + kFrameSide - 14, "to the sensor");
+  svg.text(frame.left + 48, kFrameTop + kFrameSide - 10, "to the sensor", "text-anchor='middle'");
 }
 
 }  // namespace

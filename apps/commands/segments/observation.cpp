@@ -85,8 +85,8 @@ void drawOneObservation(const SegmentsCommand& command, const LaserScans& input)
   picture.covariance = linearised(scan, beam, options.noise);
   picture.projected = positionsOf(particles, scan, beam);
   picture.projected_density = positionsOf(many, scan, beam);
-  const std::string measurement =
-      formatted("%.2f m", scan.ranges[beam]) + formatted(" at %.1f degrees", kDegreesPerRadian * scan.bearings[beam]);
+  const double degrees = std::round(10.0 * kDegreesPerRadian * scan.bearings[beam]) / 10.0 + 0.0;  // no "-0.0"
+  const std::string measurement = formatted("%.2f m", scan.ranges[beam]) + formatted(" at %.1f degrees", degrees);
   picture.title = input.names[index] + ", beam " + std::to_string(beam) + ": " + measurement + "; dark: the " +
                   std::to_string(options.particles.samples) +
                   " particles of the observation, pale: " + std::to_string(kDensity) + " more";
