@@ -108,7 +108,7 @@ class KernelDistances final : public CentreDistances<D> {
     if constexpr (Kernel::kIsLinear)
       return features.row(j).dot(centres.col(c));
     else
-      return Kernel::at(features.data() + j, features.rows(), centres.col(c));
+      return Kernel::at(features.data() + j, features.rows(), centres.col(c), std::numeric_limits<double>::infinity());
   }
 
   /// Compares rows of X with a column of Y. X is rows x F and starts at `x`; its columns are `stride` apart. The loops
@@ -118,7 +118,7 @@ class KernelDistances final : public CentreDistances<D> {
     const Eigen::Matrix<double, kFeatures, 1> y = centres.col(c);
     const auto label = static_cast<double>(c);
     for (Eigen::Index j = 0; j < rows; ++j) {
-      const double distance = Kernel::at(x + j, stride, y);
+      const double distance = Kernel::at(x + j, stride, y, nearest.distance[j]);
       const bool nearer =
           (distance < nearest.distance[j]) | ((distance == nearest.distance[j]) & (label < nearest.label[j]));
       nearest.distance[j] = nearer ? distance : nearest.distance[j];

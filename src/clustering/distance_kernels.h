@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "gaussmap/core/gaussian.h"
@@ -10,7 +11,8 @@
 
 // The distances of GaussianDistance in the form in which k-means evaluates them. A kernel writes an input Gaussian z
 // and a cluster centre w as columns of kFeatures numbers x and y. at() computes their distance, without the part
-// constant(z). `x` points to the first number of z; the numbers are `stride` apart.
+// constant(z). `x` points to the first number of z; the numbers are `stride` apart. For a distance above `limit`, at()
+// can return any other number above `limit`.
 namespace gaussmap::detail {
 
 /// Writes the upper triangle of a symmetric matrix to `numbers` from `slot` on. Moves `slot`.
@@ -26,7 +28,7 @@ struct LinearKernel {
   static constexpr bool kIsLinear = true;
   static constexpr int kFeatures = F;
 
-  static double at(const double* x, Eigen::Index stride, const Eigen::Matrix<double, F, 1>& y) {
+  static double at(const double* x, Eigen::Index stride, const Eigen::Matrix<double, F, 1>& y, double /*limit*/) {
     double distance = y(0);  // x_0 is 1
     for (int f = 1; f < F; ++f) distance += y(f) * x[f * stride];
     return distance;
@@ -135,7 +137,7 @@ struct BhattacharyyaKernel : PairwiseKernel<D> {
     writeInput(w.mean, w.cov, factor, y);
   }
 
-  static double at(const double* x, Eigen::Index stride, const typename Base::Numbers& y) {
+  static double at(const double* x, Eigen::Index stride, const typename Base::Numbers& y, double /*limit*/) {
     Matrix<D> average;
     int slot = Base::kMatrix;
     for (int i = 0; i < D; ++i)
@@ -155,7 +157,7 @@ inline double nuclearNorm(const Matrix<2>& matrix, double determinant) {
 /// The same in 3-D. With n = sum of s_i and q = s_1 s_2 + s_1 s_3 + s_2 s_3:
 ///   n^2 = sum of s_i^2 + 2 q,   q^2 = sum of s_i^2 s_j^2 + 2 n det,
 /// where the two sums are the squared norms of the matrix and of its cofactors. All terms are positive, so no digits
-/// are lost. Newton's method finds n: the error is squared in each step, and the slope of the equation is at most 1/9.
+/// are lost. Newton's method finds n: the error is squared in each step, and less than a tenth of it is left anyway.
 inline double nuclearNorm(const Matrix<3>& matrix, double determinant) {
   const double squares = matrix.squaredNorm();
   const double products = matrix.col(0).cross(matrix.col(1)).squaredNorm() +
@@ -168,13 +170,15 @@ inline double nuclearNorm(const Matrix<3>& matrix, double determinant) {
     if (!(q > 0.0)) return next;
     const double change = (next - norm) / (1.0 - determinant / (next * q));
     norm += change;
-    if (std::abs(change) <= 1e-15 * norm) break;
+    if (std::abs(change) <= 1e-8 * norm) break;
   }
   return norm;
 }
 
-/// The squared 2-Wasserstein distance. Numbers: mean, lower Cholesky factor L by columns, trace of the covariance. The
-/// trace of the square root, tr (S_w^1/2 S_z S_w^1/2)^1/2, is the sum of the singular values of L_w' L_z.
+/// The squared 2-Wasserstein distance. Numbers: mean, lower Cholesky factor L by columns, r = sqrt(tr Sigma). The trace
+/// n of (S_w^1/2 S_z S_w^1/2)^1/2 is the sum of the singular values of L_w' L_z. It is at most r_z r_w. So
+///   W^2 = |mu_z - mu_w|^2 + (r_z - r_w)^2 + 2 (r_z r_w - n),
+/// and the first two terms show without n that most centres are not the nearest one.
 template <int D>
 struct WassersteinKernel : PairwiseKernel<D> {
   using Base = PairwiseKernel<D>;
@@ -185,14 +189,17 @@ struct WassersteinKernel : PairwiseKernel<D> {
     for (int i = 0; i < D; ++i) x(slot++) = mean(i);
     for (int j = 0; j < D; ++j)
       for (int i = j; i < D; ++i) x(slot++) = factor.lower(i, j);
-    x(slot) = cov.trace();
+    x(slot) = std::sqrt(cov.trace());
   }
   template <typename Column>
   static void writeCentre(const Gaussian<D>& w, const SmallCholesky<D>& factor, Column&& y) {
     writeInput(w.mean, w.cov, factor, y);
   }
 
-  static double at(const double* x, Eigen::Index stride, const typename Base::Numbers& y) {
+  static double at(const double* x, Eigen::Index stride, const typename Base::Numbers& y, double limit) {
+    const double z_root = x[Base::kLast * stride], w_root = y(Base::kLast);
+    const double least = Base::difference(x, stride, y).squaredNorm() + (z_root - w_root) * (z_root - w_root);
+    if (least > limit) return least;
     Matrix<D> z = Matrix<D>::Zero(), w = Matrix<D>::Zero();
     int slot = Base::kMatrix;
     double determinant = 1.0;
@@ -203,8 +210,7 @@ struct WassersteinKernel : PairwiseKernel<D> {
         if (i == j) determinant *= z(i, i) * w(i, i);
       }
     const Matrix<D> product = w.transpose().lazyProduct(z);
-    return Base::difference(x, stride, y).squaredNorm() + x[Base::kLast * stride] + y(Base::kLast) -
-           2.0 * nuclearNorm(product, determinant);
+    return least + 2.0 * std::max(0.0, z_root * w_root - nuclearNorm(product, determinant));
   }
 };
 

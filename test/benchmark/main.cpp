@@ -27,6 +27,7 @@ int main(int argc, char** argv) try {
 #ifdef GAUSSMAP_BENCHMARK_VIEWER
   addFrameTimes(app);
 #endif
+  addDistances(app);
   addReference(app);
   addWideScans(app);
   addBoxLoad(app);

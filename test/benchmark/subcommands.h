@@ -21,6 +21,7 @@ void addNormals(CLI::App& app);       // with PCL
 void addFilters(CLI::App& app);       // with PCL
 void addSearch(CLI::App& app);        // with PCL
 void addFrameTimes(CLI::App& app);    // with the viewer
+void addDistances(CLI::App& app);
 void addReference(CLI::App& app);
 void addWideScans(CLI::App& app);
 void addBoxLoad(CLI::App& app);
