@@ -100,10 +100,12 @@ std::vector<Square> squaresOf(const GaussianMap<3>& map, int scale, const std::v
   return squares;
 }
 
-void addOverlay(const GaussianMap<3>& map, int scale, double sigma, Panel& panel) {
+/// Adds a coarse scale, the finest scale and the coarse cells. From above, the finest Gaussians of a map in space cover
+/// the whole ground, so the coarse ones, which are translucent, lie on top.
+void addOverlay(const GaussianMap<3>& map, bool is_planar, int scale, double sigma, Panel& panel) {
   panel.title += " over " + titleOf(map, 0);
   panel.squares = squaresOf(map, scale);
-  panel.has_large_on_top = true;  // dense fine Gaussians would hide the coarse ones, which are translucent
+  panel.has_large_on_top = !is_planar;
   panel.keys = {
       {kCoarseColour, "coarse scale", false}, {kFineColour, "finest scale", false}, {"#000000", "coarse cells", true}};
   addEllipses(map, scale, sigma, kCoarseColour, panel);
@@ -149,7 +151,7 @@ Panel panelOf(const std::string& path, const DrawCommand& options) {
   Panel panel;
   panel.title = std::filesystem::path(path).filename().string() + ": " + titleOf(map, scale);
   if (options.overlay) {
-    addOverlay(map, scale, sigma, panel);
+    addOverlay(map, is_planar, scale, sigma, panel);
   } else if (options.colour == DrawColour::Contribution) {
     addContributions(map, scale, sigma, panel);
   } else if (options.colour == DrawColour::CellError) {

@@ -5,7 +5,6 @@
 #include <vtkDoubleArray.h>
 #include <vtkLookupTable.h>
 #include <vtkNew.h>
-#include <vtkProperty2D.h>
 #include <vtkScalarBarActor.h>
 #include <vtkTextActor.h>
 #include <vtkTextProperty.h>
@@ -17,6 +16,7 @@ namespace gaussmap {
 namespace {
 
 constexpr double kInk = 0.15;
+constexpr double kGround = 0.6;  // opacity of the white ground that makes text readable in front of any colour
 
 int fontSize(int height) {
   return std::clamp(height / 45, 11, 28);
@@ -38,7 +38,7 @@ vtkSmartPointer<vtkActor2D> textActor(const std::string& text, Corner corner, in
   actor->SetInput(text.c_str());
   setText(*actor->GetTextProperty(), fontSize(height));
   actor->GetTextProperty()->SetBackgroundColor(1.0, 1.0, 1.0);
-  actor->GetTextProperty()->SetBackgroundOpacity(0.6);  // readable in front of any colour
+  actor->GetTextProperty()->SetBackgroundOpacity(kGround);
   const bool right = corner == Corner::TopRight, top = corner != Corner::BottomLeft;
   actor->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
   actor->SetPosition(right ? 0.985 : 0.015, top ? 0.98 : 0.02);
@@ -64,12 +64,12 @@ vtkSmartPointer<vtkDoubleArray> roundFactors(double low, double high) {
   return labels;
 }
 
-/// Returns round numbers in a range, at equal steps: two to six of them.
+/// Returns round numbers in a range, at equal steps: three to eight of them.
 vtkSmartPointer<vtkDoubleArray> roundSteps(double low, double high) {
-  const double decade = std::pow(10.0, std::floor(std::log10((high - low) / 2.0)));
+  const double decade = std::pow(10.0, std::floor(std::log10((high - low) / 3.0)));
   double step = decade;
   for (const double factor : {2.0, 5.0})
-    if (factor * decade <= (high - low) / 2.0) step = factor * decade;
+    if (factor * decade <= (high - low) / 3.0) step = factor * decade;
   const auto labels = vtkSmartPointer<vtkDoubleArray>::New();
   for (double k = std::ceil(low / step); k * step <= high; ++k) labels->InsertNextValue(k * step + 0.0);  // no -0
   return labels;
@@ -102,9 +102,10 @@ vtkSmartPointer<vtkActor2D> barOf(const Colouring& colouring, int height) {
   bar->SetWidth(0.11);
   bar->SetHeight(0.4);
   bar->SetBarRatio(0.2);
-  bar->DrawBackgroundOn();  // the numbers stay readable in front of any colour
-  bar->GetBackgroundProperty()->SetColor(1.0, 1.0, 1.0);
-  bar->GetBackgroundProperty()->SetOpacity(0.7);
+  for (vtkTextProperty* const text : {bar->GetTitleTextProperty(), bar->GetLabelTextProperty()}) {
+    text->SetBackgroundColor(1.0, 1.0, 1.0);
+    text->SetBackgroundOpacity(kGround);
+  }
   return bar;
 }
 
