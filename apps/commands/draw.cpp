@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // gaussmap draw MAP... -o OUT.svg: draws the ellipses of maps, seen from above.
+#include <algorithm>
+#include <cmath>
 #include <iostream>
+#include <limits>
+#include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "commands/any_map.h"
@@ -13,13 +17,16 @@
 #include "common/report.h"
 #include "drawing/map_picture.h"
 #include "drawing/plan_view.h"
+#include "gaussmap/mapping/refine.h"
 
 namespace gaussmap::app {
 namespace {
 
 constexpr std::size_t kMaxEllipses = 200000;         // already 30 MB of text, which is the limit of many viewers
 constexpr double kSigma = 2.0, kOverlaySigma = 3.0;  // default half axes [standard deviations]
-constexpr const char *kPlanarColour = "#22488c", *kCoarseColour = "#1f4fd8", *kFineColour = "#d61f1f";
+constexpr double kSquareOpacity = 0.7;               // the ellipses stay visible on dark squares
+constexpr const char *kPlanarColour = "#22488c", *kCoarseColour = "#1f4fd8", *kFineColour = "#d61f1f",
+                     *kOnSquares = "#202020";
 
 const Help kDrawHelp = {
     "Draw maps from above: the ellipses of one scale, coloured by height",
@@ -28,7 +35,18 @@ const Help kDrawHelp = {
 Planar maps have no heights, so their ellipses have one colour.
 
 --overlay draws the coarsest scale (or that of --scale) in blue, the finest scale in red, and the cells of the coarse
-scale as black squares, as in Fig. 7 of Yguel et al. 2009.)"};
+scale as black squares, as in Fig. 7 of Yguel et al. 2009.
+
+--color contribution and --color cell-error show where a coarse scale represents the finer one badly, by eq. (6) and
+Fig. 5 of that paper. A finer Gaussian contributes the square of the distance between its mean and the nearest mean of
+the coarse cell, in standard deviations of the finer Gaussian. The error of a cell is the mean of these contributions.
+contribution colours the Gaussians of --scale (default: the second coarsest) and draws the cells of the next coarser
+scale in black. cell-error colours the cells of --scale (default: the coarsest); of cells one above the other, it shows
+the largest error.)"};
+
+enum class DrawColour { Height, Contribution, CellError };
+const std::map<std::string, DrawColour> kDrawColours = {
+    {"height", DrawColour::Height}, {"contribution", DrawColour::Contribution}, {"cell-error", DrawColour::CellError}};
 
 struct DrawCommand {
   std::vector<std::string> maps;
@@ -36,6 +54,7 @@ struct DrawCommand {
   std::optional<int> scale;
   std::optional<double> sigma;
   bool overlay = false;
+  DrawColour colour = DrawColour::Height;
   std::vector<double> box;
 };
 
@@ -61,39 +80,94 @@ void addEllipses(const GaussianMap<3>& map, int scale, double sigma, const std::
   }
 }
 
-/// Returns the squares of the cells of a scale, seen from above, each once [m].
-std::vector<Box<2>> squaresOf(const GaussianMap<3>& map, int scale) {
-  std::set<std::pair<std::int32_t, std::int32_t>> keys;
-  for (const CellKey<3>& key : map.scale(scale).keys) keys.emplace(key[0], key[1]);
-  std::vector<Box<2>> squares;
-  squares.reserve(keys.size());
+/// Returns the squares of the cells of a scale, seen from above, each once. `values`: one per cell, or empty; a square
+/// has the largest value of its cells, or NaN if none has a value.
+std::vector<Square> squaresOf(const GaussianMap<3>& map, int scale, const std::vector<double>& values = {}) {
+  std::map<std::pair<std::int32_t, std::int32_t>, double> columns;
+  for (std::size_t cell = 0; cell < map.cellCount(scale); ++cell) {
+    const CellKey<3>& key = map.scale(scale).keys[cell];
+    double& value = columns.try_emplace({key[0], key[1]}, std::numeric_limits<double>::quiet_NaN()).first->second;
+    if (!values.empty()) value = std::fmax(value, values[cell]);  // NaN only if both are
+  }
+  std::vector<Square> squares;
+  squares.reserve(columns.size());
   const double side = map.grid().side(scale);
-  for (const auto& [x, y] : keys) squares.push_back({Vector<2>(x, y) * side, Vector<2>(x + 1.0, y + 1.0) * side});
+  for (const auto& [column, value] : columns) {
+    const Vector<2> low(column.first, column.second);
+    squares.push_back({{low * side, (low + Vector<2>::Ones()) * side}, {}});
+    if (!values.empty()) squares.back().value = value;
+  }
   return squares;
+}
+
+/// Adds a coarse scale, the finest scale and the coarse cells. From above, the finest Gaussians of a map in space cover
+/// the whole ground, so the coarse ones, which are translucent, lie on top.
+void addOverlay(const GaussianMap<3>& map, bool is_planar, int scale, double sigma, Panel& panel) {
+  panel.title += " over " + titleOf(map, 0);
+  panel.squares = squaresOf(map, scale);
+  panel.has_large_on_top = !is_planar;
+  panel.keys = {
+      {kCoarseColour, "coarse scale", false}, {kFineColour, "finest scale", false}, {"#000000", "coarse cells", true}};
+  addEllipses(map, scale, sigma, kCoarseColour, panel);
+  addEllipses(map, 0, sigma, kFineColour, panel);
+}
+
+/// Adds the Gaussians of a scale, coloured by their contribution to the errors of the next coarser one.
+void addContributions(const GaussianMap<3>& map, int scale, double sigma, Panel& panel) {
+  const std::vector<double> contributions = cellErrors(map, scale + 1).contributions;
+  panel.title += ", cells of " + numberText(map.grid().side(scale + 1)) + " m";
+  panel.squares = squaresOf(map, scale + 1);
+  addEllipses(map, scale, sigma, "", panel);
+  for (std::size_t i = 0; i < contributions.size(); ++i) panel.ellipses[i].value = contributions[i];
+}
+
+/// Adds the cells of a scale, coloured by their errors, and its Gaussians.
+void addCellErrors(const GaussianMap<3>& map, int scale, double sigma, Panel& panel) {
+  panel.squares = squaresOf(map, scale, cellErrors(map, scale).cells);
+  addEllipses(map, scale, sigma, kOnSquares, panel);
+  panel.is_filled = false;
+}
+
+/// Returns the scale to draw: that of --scale, or the default of the colour. Throws UsageError if there is none.
+int scaleOf(const std::string& path, const GaussianMap<3>& map, const DrawCommand& options) {
+  const int coarsest = map.scales() - 1, scale = options.scale.value_or(coarsest);
+  checkScale("--scale", scale, map.scales(), path);
+  if (options.overlay && scale == 0)
+    throw UsageError(path + ": --overlay draws a coarse scale over the finest one; use --scale 1 or more");
+  if (options.colour == DrawColour::CellError && scale == 0)
+    throw UsageError(path + ": --color cell-error: no scale is finer than scale 0; use --scale 1 or more");
+  if (options.colour != DrawColour::Contribution) return scale;
+  if (options.scale ? scale == coarsest : coarsest == 0)
+    throw UsageError(path + ": --color contribution: no scale is coarser than scale " + std::to_string(coarsest) +
+                     (coarsest > 0 ? "; use a finer --scale" : ""));
+  return options.scale.value_or(coarsest - 1);
 }
 
 Panel panelOf(const std::string& path, const DrawCommand& options) {
   const bool is_planar = dimensionsOf(path) == 2;
   const GaussianMap<3> map = loadInSpace(path);
-  const int scale = options.scale.value_or(map.scales() - 1);
-  checkScale("--scale", scale, map.scales(), path);
+  const int scale = scaleOf(path, map, options);
+  const double sigma = options.sigma.value_or(options.overlay ? kOverlaySigma : kSigma);
   Panel panel;
   panel.title = std::filesystem::path(path).filename().string() + ": " + titleOf(map, scale);
-  if (!options.overlay) {
+  if (options.overlay) {
+    addOverlay(map, is_planar, scale, sigma, panel);
+  } else if (options.colour == DrawColour::Contribution) {
+    addContributions(map, scale, sigma, panel);
+  } else if (options.colour == DrawColour::CellError) {
+    addCellErrors(map, scale, sigma, panel);
+  } else {
     panel.cell_side = map.grid().side(scale);
-    addEllipses(map, scale, options.sigma.value_or(kSigma), is_planar ? kPlanarColour : "", panel);
-    return panel;
+    addEllipses(map, scale, sigma, is_planar ? kPlanarColour : "", panel);
   }
-  if (scale == 0)
-    throw UsageError(path + ": --overlay draws a coarse scale over the finest one; use --scale 1 or more");
-  const double sigma = options.sigma.value_or(kOverlaySigma);
-  panel.title += " over " + titleOf(map, 0);
-  panel.squares = squaresOf(map, scale);
-  panel.keys = {
-      {kCoarseColour, "coarse scale", false}, {kFineColour, "finest scale", false}, {"#000000", "coarse cells", true}};
-  addEllipses(map, scale, sigma, kCoarseColour, panel);
-  addEllipses(map, 0, sigma, kFineColour, panel);
   return panel;
+}
+
+BarOptions barOf(DrawColour colour) {
+  if (colour == DrawColour::Contribution)
+    return {"contribution to the error of the coarse cell [squared sigma]", true, 1.0};
+  if (colour == DrawColour::CellError) return {"error of the cell [squared sigma]", true, kSquareOpacity};
+  return {};
 }
 
 /// Returns the box around all ellipses [m].
@@ -105,9 +179,9 @@ Box<2> windowAround(const std::vector<Panel>& panels) {
       include(window, ellipse.centre + ellipse.reach());
     }
   for (const Panel& panel : panels)
-    for (const Box<2>& square : panel.squares) {
-      include(window, square.low);
-      include(window, square.high);
+    for (const Square& square : panel.squares) {
+      include(window, square.box.low);
+      include(window, square.box.high);
     }
   return window;
 }
@@ -136,7 +210,7 @@ void run(const DrawCommand& options) {
     throw UsageError(std::to_string(count) + " Gaussians would lie in the picture, more than " +
                      std::to_string(kMaxEllipses) + "; use a coarser --scale or draw a part of the map (--box)");
   const Box<2> window = given ? *given : windowAround(panels);
-  drawMaps(std::move(panels), window, options.output.path);
+  drawMaps(std::move(panels), window, barOf(options.colour), options.output.path);
   std::cout << options.output.path << ": " << count << " Gaussians, "
             << humanBytes(std::filesystem::file_size(options.output.path)) << '\n';
 }
@@ -152,6 +226,11 @@ void addDraw(CLI::App& app) {
   command.number("--sigma", options->sigma, 0.01, 100.0,
                  "half axes of the ellipses, in standard deviations; default: 2, with --overlay 3");
   command.flag("--overlay", options->overlay, "draw the coarsest and the finest scale over each other, and the cells");
+  command
+      .choiceOf("--color", options->colour, kDrawColours,
+                "height, or errors of coarse cells: contribution of each finer Gaussian, or error of each cell")
+      .rare();
+  command.excludes("--overlay", {"--color"});
   command.numbers("--box", options->box, 4, -1e9, 1e9, "draw only the part from x0 y0 to x1 y1 [m]")
       .type("X0 Y0 X1 Y1");
   command.files({"maps"}, {".gmap", ".pcd"});

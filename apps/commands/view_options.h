@@ -24,6 +24,8 @@ struct ViewCommand {
   std::optional<int> scale;
   bool leaves = false;
   std::string colour;  // empty: the default
+  std::string mesh;
+  std::optional<double> span;
   std::string up = "z", from, size = "1200x800";
   std::vector<double> at;
   Output png;

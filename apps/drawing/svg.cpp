@@ -47,6 +47,11 @@ std::string numberText(double value) {
   return text.str();
 }
 
+double widthOf(const std::string& text) {
+  constexpr double kCharacter = 6.2;  // upper bound of the mean width of a character of 11 pixels
+  return kCharacter * static_cast<double>(text.size());
+}
+
 double roundLength(double length) {
   const double decade = std::pow(10.0, std::floor(std::log10(length)));
   for (const double step : {5.0, 2.0})

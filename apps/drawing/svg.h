@@ -32,6 +32,9 @@ class Svg {
 /// Formats a number with at most ten digits and without trailing zeros: "0.25".
 std::string numberText(double value);
 
+/// Returns an upper bound of the width of a line of text of the size that drawMaps() uses [pixels].
+double widthOf(const std::string& text);
+
 /// Returns the largest number of the form 1, 2 or 5 times a power of ten that is at most `length`; `length` > 0.
 double roundLength(double length);
 

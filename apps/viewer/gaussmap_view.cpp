@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // gaussmap-view MAP [CLOUD...]: the program that `gaussmap view` starts.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <iostream>
 #include <map>
 #include <optional>
@@ -13,6 +15,7 @@
 #include "common/report.h"
 #include "common/signals.h"
 #include "gaussmap/io/export/segment_files.h"
+#include "gaussmap/io/mesh/ply.h"
 #include "gaussmap/io/pcd/map_pcd.h"
 #include "viewer/viewer.h"
 
@@ -21,9 +24,14 @@ using namespace detail;
 
 namespace {
 
-const std::map<std::string, ColourBy> kColours = {{"scale", ColourBy::Scale},   {"height", ColourBy::Height},
-                                                  {"normal", ColourBy::Normal}, {"weight", ColourBy::Weight},
-                                                  {"error", ColourBy::Error},   {"occupancy", ColourBy::Occupancy}};
+const std::map<std::string, ColourBy> kColours = {{"scale", ColourBy::Scale},
+                                                  {"height", ColourBy::Height},
+                                                  {"normal", ColourBy::Normal},
+                                                  {"weight", ColourBy::Weight},
+                                                  {"error", ColourBy::Error},
+                                                  {"occupancy", ColourBy::Occupancy},
+                                                  {"contribution", ColourBy::Contribution},
+                                                  {"cell-error", ColourBy::CellError}};
 
 /// Reads `count` numbers such as "1,2.5,-3" or "800x600". Returns an empty vector for any other text.
 template <typename Number>
@@ -42,9 +50,18 @@ std::vector<Number> numbersIn(const std::string& text, char between, std::size_t
   return numbers;
 }
 
+bool isMesh(const std::string& path) {
+  return std::filesystem::path(path).extension() == ".ply";
+}
+
+bool isPlanar(const std::string& path) {
+  return !isMesh(path) && dimensionsOf(path) == 2;
+}
+
 ViewPoint viewPoint(const ViewCommand& command, const Vector<3>& up) {
-  const bool is_default = command.from.empty(), is_planar = is_default && dimensionsOf(command.map) == 2;
-  if (command.from == "top" || is_planar) return viewFromAbove(up);
+  const bool is_default = command.from.empty();
+  const bool is_flat = !command.view.hierarchy && isPlanar(command.map);
+  if (command.from == "top" || (is_default && is_flat)) return viewFromAbove(up);
   if (command.from == "iso" || is_default) return {};
   const std::vector<double> numbers = numbersIn<double>(command.from, ',', 3);
   ViewPoint view;
@@ -62,20 +79,41 @@ std::pair<int, int> sizeOf(const ViewCommand& command) {
   return {numbers[0], numbers[1]};
 }
 
-void checkForSegments(const ViewCommand& command) {
+/// Throws UsageError if an option was given that is only for maps of Gaussians.
+void checkWithoutGaussians(const ViewCommand& command, const std::string& kind) {
   for (const auto& [name, given] :
        {std::pair("--scale", command.scale.has_value()), std::pair("--leaves", command.leaves),
         std::pair("--color", !command.colour.empty()), std::pair("--cells", command.view.cells),
         std::pair("--hierarchy", command.view.hierarchy)})
-    if (given) throw UsageError(std::string(name) + ": not for maps of segments, such as " + command.map);
+    if (given) throw UsageError(std::string(name) + ": not for " + kind + ", such as " + command.map);
+}
+
+/// Sets the default scale for the errors of coarse cells. Throws UsageError if the given scale has none.
+void setErrorScale(const ViewCommand& command, const GaussianMap<3>& map, ViewOptions& view) {
+  if (view.hierarchy) return;  // the scale that has no value is grey
+  const int coarsest = map.scales() - 1;
+  int& scale = *view.scale;
+  if (view.colour == ColourBy::Contribution) {
+    if (!command.scale) scale = std::min(scale, coarsest - 1);
+    if (scale < 0 || scale == coarsest)
+      throw UsageError("--color contribution: no scale is coarser than scale " + std::to_string(coarsest) +
+                       "; use a finer --scale");
+  }
+  if (view.colour == ColourBy::CellError) {
+    if (!command.scale) scale = coarsest;
+    if (scale == 0) throw UsageError("--color cell-error: no scale is finer than scale 0; use a coarser --scale");
+  }
 }
 
 /// Sets the scale that is shown, which depends on the map.
 void setScale(const ViewCommand& command, const GaussianMap<3>& map, ViewOptions& view) {
   if (command.leaves && command.scale) throw UsageError("--leaves and --scale: only one of them may be given");
   if (command.scale) checkScale("--scale", *command.scale, map.scales());
+  if (view.colour == ColourBy::CellError && command.leaves)
+    throw UsageError("--color cell-error: leaves have no finer cells; use --scale instead of --leaves");
   if (command.leaves) return;
   view.scale = command.scale.value_or(scaleToShow(map));
+  setErrorScale(command, map, view);
   if (view.colour == ColourBy::Error && *view.scale == 0 && command.cloud.paths.empty() && !view.hierarchy)
     throw UsageError(
         "--color error: no scale is finer than scale 0; give a CLOUD to compare with or a coarser --scale");
@@ -88,16 +126,23 @@ void run(ViewCommand command) {
   const double zoom = view.view.zoom;
   view.view = viewPoint(command, view.up);
   view.view.zoom = zoom;
+  view.view.span = command.span;
   if (!command.at.empty()) view.view.middle = Vector<3>(command.at[0], command.at[1], command.at[2]);
-  if (!command.colour.empty()) view.colour = kColours.at(command.colour);
+  if (!command.colour.empty())
+    view.colour = kColours.at(command.colour);
+  else if (view.hierarchy && isPlanar(command.map))
+    view.colour = ColourBy::Scale;  // all heights are equal
   if (!command.png.path.empty()) {
     requireExtension(command.png.path, ".png");
     checkOutput(command.png, {command.map});
   }
   ViewScene scene;
   scene.name = std::filesystem::path(command.map).filename().string();
-  if (std::filesystem::exists(command.map) && !isGmap(command.map) && isSegmentPcd(command.map)) {
-    checkForSegments(command);
+  if (isMesh(command.map)) {
+    checkWithoutGaussians(command, "meshes");
+    scene.map = readPly(command.map);
+  } else if (std::filesystem::exists(command.map) && !isGmap(command.map) && isSegmentPcd(command.map)) {
+    checkWithoutGaussians(command, "maps of segments");
     scene.map = loadSegmentsPcd(command.map);
   } else {
     GaussianMap<3> map = loadInSpace(command.map);
@@ -105,6 +150,7 @@ void run(ViewCommand command) {
     setScale(command, map, view);
     scene.map = std::move(map);
   }
+  if (!command.mesh.empty()) scene.mesh = readPly(command.mesh);
   if (!command.cloud.paths.empty()) scene.cloud = readPoints(command.cloud, 0);
   Viewer viewer(std::move(scene), view);
   if (command.png.path.empty()) return viewer.show(width, height);

@@ -186,6 +186,23 @@ vtkSmartPointer<vtkActor> pointActor(const std::vector<Vector<3>>& points, const
   return actor;
 }
 
+vtkSmartPointer<vtkActor> meshActor(const TriangleMesh& mesh, const Vector<3>& origin) {
+  vtkNew<vtkPoints> corners;
+  vtkNew<vtkCellArray> faces;
+  for (const Vector<3>& vertex : mesh.vertices) insert(*corners, vertex - origin);
+  for (const TriangleMesh::Triangle& triangle : mesh.triangles)
+    faces->InsertNextCell({vtkIdType{triangle[0]}, vtkIdType{triangle[1]}, vtkIdType{triangle[2]}});
+  vtkNew<vtkPolyData> data;
+  data->SetPoints(corners);
+  data->SetPolys(faces);
+  const auto actor = actorOf(data);
+  actor->GetProperty()->SetInterpolationToFlat();
+  actor->GetProperty()->SetColor(0.84, 0.82, 0.77);
+  actor->GetProperty()->SetAmbient(0.25);
+  actor->GetProperty()->SetDiffuse(0.8);
+  return actor;
+}
+
 std::vector<vtkSmartPointer<vtkActor>> segmentActors(const SegmentMap& map, const Vector<3>& origin, double height) {
   constexpr Colour kColours[] = {{0, 114, 178}, {213, 94, 0},   {0, 158, 115}, {204, 121, 167},
                                  {230, 159, 0}, {86, 180, 233}, {90, 90, 90}};

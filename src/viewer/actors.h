@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "gaussmap/mesh/triangle_mesh.h"
 #include "gaussmap/segments/segment_map.h"
 #include "viewer/colouring.h"
 #include "viewer/glyphs.h"
@@ -40,6 +41,9 @@ vtkSmartPointer<vtkActor> cubeActor(const std::vector<Cube>& cubes);
 vtkSmartPointer<vtkActor> linkActor(const std::vector<std::pair<Vector<3>, Vector<3>>>& links);
 
 vtkSmartPointer<vtkActor> pointActor(const std::vector<Vector<3>>& points, const Vector<3>& origin);
+
+/// Returns an actor that draws a mesh as a pale surface.
+vtkSmartPointer<vtkActor> meshActor(const TriangleMesh& mesh, const Vector<3>& origin);
 
 /// Returns actors that draw segments as vertical walls of this height [m]. Each chain has a colour; a pale band on the
 /// ground shows the free side.

@@ -71,7 +71,7 @@ void aim(vtkCamera& camera, const ViewPoint& view, const Vector<3>& upwards, con
     middle += spanAlong(right, seen).middle() * right + spanAlong(up, seen).middle() * up;
     distance = distanceFor(middle, right, up, back, points, tangent, aspect, view.perspective);
   }
-  distance /= view.zoom;
+  distance = view.span ? 0.5 * *view.span / tangent : distance / view.zoom;
   const Vector<3> eye = middle + distance * back;
   camera.SetParallelProjection(!view.perspective);
   camera.SetParallelScale(distance * tangent);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <iterator>
 #include <sstream>
+#include <tuple>
+#include <utility>
 
 #include "core/ellipsoid_pose.h"
 #include "evaluation/error_cloud.h"
@@ -50,6 +52,22 @@ Colouring inViridis(std::string title, const std::vector<double>& values, Bright
   });
 }
 
+/// Colours values that span orders of magnitude: large ones are dark. Zero has the colour of the lower end.
+Colouring logarithmic(std::string title, const std::vector<double>& values) {
+  const std::pair<double, double> range = logColourRange(values);
+  Colouring colouring;
+  colouring.title = std::move(title);
+  std::tie(colouring.low, colouring.high) = range;
+  colouring.is_logarithmic = true;
+  const double width = std::log(range.second / range.first);
+  for (int i = 0; i < kBarSteps; ++i) colouring.bar.push_back(viridis(1.0 - (i + 0.5) / kBarSteps));
+  for (const double value : values)
+    colouring.colours.push_back(!std::isfinite(value) ? kGrey
+                                : value > 0.0         ? viridis(1.0 - std::log(value / range.first) / width)
+                                                      : viridis(1.0));
+  return colouring;
+}
+
 Colouring byScale(const GaussianMap<3>& map, const std::vector<GaussianId>& gaussians) {
   const auto colour = [](int scale) { return kScales[static_cast<std::size_t>(scale) % std::size(kScales)]; };
   Colouring colouring;
@@ -65,6 +83,10 @@ Colouring byScale(const GaussianMap<3>& map, const std::vector<GaussianId>& gaus
 }
 
 }  // namespace
+
+bool showsErrors(ColourBy by) {
+  return by == ColourBy::Error || by == ColourBy::Contribution || by == ColourBy::CellError;
+}
 
 Colouring colouringOf(const GaussianMap<3>& map, const std::vector<GaussianId>& gaussians,
                       const ColouringOptions& options, const std::vector<double>& errors) {
@@ -92,6 +114,10 @@ Colouring colouringOf(const GaussianMap<3>& map, const std::vector<GaussianId>& 
       const double red = colourRange(errors).second;
       return continuous("error [m]", errors, 0.0, red, [red](double error) { return errorTint(error, red); });
     }
+    case ColourBy::Contribution:
+      return logarithmic("contribution\n[squared sigma]", errors);
+    case ColourBy::CellError:
+      return logarithmic("error of cell\n[squared sigma]", errors);
     case ColourBy::Height:
       break;
   }

@@ -2,14 +2,20 @@
 #include <limits>
 
 #include "gaussmap/map/sampling.h"
+#include "gaussmap/mapping/refine.h"
 #include "points/nearest_distances.h"
 #include "viewer/colouring.h"
 
 namespace gaussmap {
 using namespace detail;
 
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
 std::vector<double> gaussianErrors(const GaussianMap<3>& map, int scale, const std::vector<Vector<3>>& reference) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const std::size_t count = map.gaussianCount(scale);
   if (count == 0 || (reference.empty() && scale == 0)) return std::vector<double>(count, kNone);
   std::vector<Vector<3>> detail;
@@ -27,6 +33,21 @@ std::vector<double> gaussianErrors(const GaussianMap<3>& map, int scale, const s
   }
   for (std::size_t i = 0; i < count; ++i) sums[i] = numbers[i] > 0.0 ? sums[i] / numbers[i] : kNone;
   return sums;
+}
+
+std::vector<double> contributions(const GaussianMap<3>& map, int scale) {
+  if (scale + 1 == map.scales()) return std::vector<double>(map.gaussianCount(scale), kNone);
+  return cellErrors(map, scale + 1).contributions;
+}
+
+std::vector<double> errorsOfCells(const GaussianMap<3>& map, int scale) {
+  std::vector<double> errors(map.gaussianCount(scale), kNone);
+  if (scale == 0) return errors;
+  const std::vector<double> cells = cellErrors(map, scale).cells;
+  for (std::size_t cell = 0; cell < cells.size(); ++cell)
+    for (std::size_t i = map.gaussiansOf(cell, scale).first; i < map.gaussiansOf(cell, scale).last; ++i)
+      errors[i] = cells[cell];
+  return errors;
 }
 
 }  // namespace gaussmap

@@ -18,6 +18,7 @@ bool Viewer::Parts::press(const std::string& key) {
   };
   if (key == "F1" || key == "question") return toggle(options.help);
   if (key == "p") return toggle(options.cloud);
+  if (key == "m") return toggle(options.mesh);
   if (key == "t" || key == "i" || key == "r") {
     options.view = key == "t" ? viewFromAbove(options.up) : key == "i" ? ViewPoint() : first_view;
     is_aimed = false;
@@ -44,8 +45,7 @@ bool Viewer::Parts::press(const std::string& key) {
     return true;
   }
   if (key == "c") {
-    options.colour = options.colour == ColourBy::Error ? ColourBy::Scale
-                                                       : static_cast<ColourBy>(static_cast<int>(options.colour) + 1);
+    options.colour = static_cast<ColourBy>((static_cast<int>(options.colour) + 1) % kColourings);
     return true;
   }
   if (key == "g") return toggle(options.cells);

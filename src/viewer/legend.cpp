@@ -2,6 +2,7 @@
 #include "viewer/legend.h"
 
 #include <vtkCoordinate.h>
+#include <vtkDoubleArray.h>
 #include <vtkLookupTable.h>
 #include <vtkNew.h>
 #include <vtkScalarBarActor.h>
@@ -15,6 +16,7 @@ namespace gaussmap {
 namespace {
 
 constexpr double kInk = 0.15;
+constexpr double kGround = 0.6;  // opacity of the white ground that makes text readable in front of any colour
 
 int fontSize(int height) {
   return std::clamp(height / 45, 11, 28);
@@ -36,7 +38,7 @@ vtkSmartPointer<vtkActor2D> textActor(const std::string& text, Corner corner, in
   actor->SetInput(text.c_str());
   setText(*actor->GetTextProperty(), fontSize(height));
   actor->GetTextProperty()->SetBackgroundColor(1.0, 1.0, 1.0);
-  actor->GetTextProperty()->SetBackgroundOpacity(0.6);  // readable in front of any colour
+  actor->GetTextProperty()->SetBackgroundOpacity(kGround);
   const bool right = corner == Corner::TopRight, top = corner != Corner::BottomLeft;
   actor->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
   actor->SetPosition(right ? 0.985 : 0.015, top ? 0.98 : 0.02);
@@ -47,6 +49,32 @@ vtkSmartPointer<vtkActor2D> textActor(const std::string& text, Corner corner, in
 
 namespace {
 
+/// Returns round numbers in a range of positive values: powers of ten or, if there are less than two, also 2 and 5
+/// times these powers.
+vtkSmartPointer<vtkDoubleArray> roundFactors(double low, double high) {
+  const auto labels = vtkSmartPointer<vtkDoubleArray>::New();
+  for (const bool with_steps : {false, true}) {
+    labels->Reset();
+    for (double decade = std::pow(10.0, std::floor(std::log10(low))); decade <= high; decade *= 10.0)
+      for (const double step : {1.0, 2.0, 5.0})
+        if ((with_steps || step == 1.0) && step * decade >= low && step * decade <= high)
+          labels->InsertNextValue(step * decade);
+    if (labels->GetNumberOfValues() >= 2) break;
+  }
+  return labels;
+}
+
+/// Returns round numbers in a range, at equal steps: three to eight of them.
+vtkSmartPointer<vtkDoubleArray> roundSteps(double low, double high) {
+  const double decade = std::pow(10.0, std::floor(std::log10((high - low) / 3.0)));
+  double step = decade;
+  for (const double factor : {2.0, 5.0})
+    if (factor * decade <= (high - low) / 3.0) step = factor * decade;
+  const auto labels = vtkSmartPointer<vtkDoubleArray>::New();
+  for (double k = std::ceil(low / step); k * step <= high; ++k) labels->InsertNextValue(k * step + 0.0);  // no -0
+  return labels;
+}
+
 vtkSmartPointer<vtkActor2D> barOf(const Colouring& colouring, int height) {
   vtkNew<vtkLookupTable> table;
   const auto count = static_cast<vtkIdType>(colouring.bar.size());
@@ -55,11 +83,13 @@ vtkSmartPointer<vtkActor2D> barOf(const Colouring& colouring, int height) {
     const Colour& colour = colouring.bar[static_cast<std::size_t>(i)];
     table->SetTableValue(i, colour[0] / 255.0, colour[1] / 255.0, colour[2] / 255.0);
   }
-  const auto label = [&](double end) { return std::abs(end) < 1e-6 * (colouring.high - colouring.low) ? 0.0 : end; };
-  table->SetTableRange(label(colouring.low), label(colouring.high));  // writes 0 instead of -1.39e-17
+  if (colouring.is_logarithmic) table->SetScaleToLog10();
+  table->SetTableRange(colouring.low, colouring.high);
   const auto bar = vtkSmartPointer<vtkScalarBarActor>::New();
-  bar->SetNumberOfLabels(5);
-  bar->SetLabelFormat("%-.3g");
+  bar->SetCustomLabels(colouring.is_logarithmic ? roundFactors(colouring.low, colouring.high)
+                                                : roundSteps(colouring.low, colouring.high));
+  bar->UseCustomLabelsOn();
+  bar->SetLabelFormat("%-.6g");
   bar->SetLookupTable(table);
   bar->SetMaximumNumberOfColors(static_cast<int>(count));
   bar->SetTitle(colouring.title.c_str());
@@ -72,6 +102,10 @@ vtkSmartPointer<vtkActor2D> barOf(const Colouring& colouring, int height) {
   bar->SetWidth(0.11);
   bar->SetHeight(0.4);
   bar->SetBarRatio(0.2);
+  for (vtkTextProperty* const text : {bar->GetTitleTextProperty(), bar->GetLabelTextProperty()}) {
+    text->SetBackgroundColor(1.0, 1.0, 1.0);
+    text->SetBackgroundOpacity(kGround);
+  }
   return bar;
 }
 

@@ -21,6 +21,7 @@ namespace {
 /// Returns a point near the middle of the map. Coordinates relative to it are precise enough as floats.
 Vector<3> originOf(const ViewScene& scene) {
   if (const auto* map = std::get_if<GaussianMap<3>>(&scene.map)) return middleOf(*map);
+  if (const auto* mesh = std::get_if<TriangleMesh>(&scene.map)) return mesh->vertices.front();
   const std::vector<Segment>& segments = std::get<SegmentMap>(scene.map).segments;
   if (segments.empty()) return Vector<3>::Zero();
   return {segments.front().start.x(), segments.front().start.y(), 0.0};

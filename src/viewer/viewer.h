@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "gaussmap/mesh/triangle_mesh.h"
 #include "gaussmap/segments/segment_map.h"
 #include "viewer/colouring.h"
 
@@ -18,15 +19,17 @@ namespace gaussmap {
 /// The data that a viewer shows.
 struct ViewScene {
   std::string name;
-  std::variant<GaussianMap<3>, SegmentMap> map;
-  std::vector<Vector<3>> cloud;  ///< [m], map frame; may be empty
+  std::variant<GaussianMap<3>, SegmentMap, TriangleMesh> map;  ///< a mesh: only a scene, without a map
+  std::vector<Vector<3>> cloud;                                ///< [m], map frame; may be empty
+  TriangleMesh mesh = {};                                      ///< [m], map frame, drawn with the map; may be empty
 };
 
 /// The position and direction of the eye.
 struct ViewPoint {
   Vector<3> direction{-0.55, -0.8, 0.6};  ///< from the scene towards the eye, of any length
   bool perspective = true;                ///< false: parallel
-  double zoom = 1.0;                      ///< 1 shows the whole scene
+  double zoom = 1.0;                      ///< 1 shows the whole scene; not used with `span`
+  std::optional<double> span;             ///< height of the picture at the point to look at [m]
   std::optional<Vector<3>> middle;        ///< point to look at [m, map frame]; nullopt: middle of the scene
 };
 
@@ -38,6 +41,7 @@ struct ViewOptions {
   double sigma = 2.0;      ///< half axes of the ellipsoids, in standard deviations
   bool cells = false;      ///< show the occupied cells as boxes
   bool cloud = true;       ///< show the cloud, if there is one
+  bool mesh = true;        ///< show the mesh, if there is one
   bool hierarchy = false;  ///< show all scales one above the other, linked to their children: Yguel 2009, Fig. 6
   bool help = false;       ///< show the keys on the screen
   /// Direction of heights and of the lift between scales. It points up in the picture (y does in a view from above).
@@ -61,8 +65,8 @@ struct Picture {
 /// Shows a scene with VTK. In a hierarchy it shows only scales of at most 200,000 Gaussians.
 class Viewer {
  public:
-  /// Throws std::invalid_argument if the scene is empty, if the map does not have the scale, if sigma or zoom is not
-  /// positive, or if `direction` or `up` is zero.
+  /// Throws std::invalid_argument if the scene is empty, if the map does not have the scale, if sigma, zoom or
+  /// span is not positive, if `direction` or `up` is zero, or if a mesh has a fault.
   Viewer(ViewScene scene, const ViewOptions& options = {});
   ~Viewer();
   Viewer(const Viewer&) = delete;

@@ -60,7 +60,13 @@ int scaleToShow(const GaussianMap<3>& map) {
 }
 
 void Viewer::Parts::check() const {
-  const bool empty = map() != nullptr ? map()->empty() : std::get<SegmentMap>(scene.map).segments.empty();
+  const auto* const segments = std::get_if<SegmentMap>(&scene.map);
+  const auto* const surface = std::get_if<TriangleMesh>(&scene.map);
+  const bool empty = surface != nullptr    ? surface->triangles.empty()
+                     : segments != nullptr ? segments->segments.empty()
+                                           : map()->empty();
+  for (const TriangleMesh* const mesh : {surface, &scene.mesh})
+    if (mesh != nullptr) checkMesh(*mesh);
   if (empty) throw std::invalid_argument(scene.name + " is empty: there is nothing to show");
   if (map() != nullptr && options.scale && (*options.scale < 0 || *options.scale >= map()->scales()))
     throw std::invalid_argument("scale " + std::to_string(*options.scale) + ": the map has the scales 0 to " +
@@ -68,6 +74,8 @@ void Viewer::Parts::check() const {
   require(options.sigma > 0.0 && options.sigma <= 1e6, "sigma", options.sigma, "must be above 0 and at most 1000000");
   require(options.view.zoom > 0.0 && options.view.zoom <= 1e6, "zoom", options.view.zoom,
           "must be above 0 and at most 1000000");
+  const double span = options.view.span.value_or(1.0);
+  require(span > 0.0 && span <= 1e9, "span", span, "must be above 0 and at most 1000000000");
   for (const Vector<3>& direction : {options.view.direction, options.up})
     if (!direction.allFinite() || !(direction.norm() > 1e-6))
       throw std::invalid_argument("the view direction and the up direction must be finite and not zero");
@@ -88,7 +96,14 @@ void Viewer::Parts::build(int width, int height) {
     renderer->SetBackground2(1.0, 1.0, 1.0);
     renderer->GradientBackgroundOn();
   }
-  const std::vector<Vector<3>> places = map() != nullptr ? addMap(height) : addSegments();
+  std::vector<Vector<3>> places;  // that the picture must show, relative to the origin
+  if (const auto* const segments = std::get_if<SegmentMap>(&scene.map))
+    places = addSegments(*segments);
+  else if (const auto* const surface = std::get_if<TriangleMesh>(&scene.map))
+    places = addMesh(*surface);
+  else
+    places = addMap(height);
+  if (options.mesh && !scene.mesh.triangles.empty()) addMesh(scene.mesh);
   if (options.cloud && !scene.cloud.empty()) renderer->AddActor(pointActor(scene.cloud, origin));
   renderer->AddActor2D(textActor(title(), Corner::TopLeft, height));
   if (options.help) renderer->AddActor2D(textActor(helpText(), Corner::BottomLeft, height));
@@ -120,8 +135,7 @@ std::vector<Vector<3>> Viewer::Parts::addMap(int height) {
     places.push_back(place);
   }
   addEllipsoids(gaussians, glyphs, height);
-  const std::vector<int> shown = options.hierarchy ? scales : std::vector<int>{options.scale.value_or(0)};
-  if (options.cells) addCells(shown, lift);
+  if (options.cells) addCells(options.hierarchy ? scales : std::vector<int>{scaleOfCells()}, lift);
   if (!options.hierarchy) return places;
   addLinks(scales, lift);
   std::vector<Vector<3>> corners;  // of the finest and the coarsest scale, which has few Gaussians
@@ -136,7 +150,7 @@ void Viewer::Parts::addEllipsoids(const std::vector<GaussianId>& gaussians, cons
                                   int height) {
   ColouringOptions by{options.colour, up()};
   const Colouring colouring =
-      colouringOf(*map(), gaussians, by, by.by == ColourBy::Error ? errorsOf(gaussians) : std::vector<double>{});
+      colouringOf(*map(), gaussians, by, showsErrors(by.by) ? errorsOf(gaussians) : std::vector<double>{});
   std::vector<Colour> shades = colouring.colours;
   for (std::size_t i = 0; i < shades.size(); ++i) shades[i] = shadeOf(shades[i], i);
   // Scale by scale, because a coarse scale has few large ellipsoids, which need more facets than many small ones.
@@ -181,8 +195,15 @@ void Viewer::Parts::addLinks(const std::vector<int>& scales, double lift) {
   renderer->AddActor(linkActor(links));
 }
 
-std::vector<Vector<3>> Viewer::Parts::addSegments() {
-  const SegmentMap& segments = std::get<SegmentMap>(scene.map);
+std::vector<Vector<3>> Viewer::Parts::addMesh(const TriangleMesh& mesh) {
+  constexpr std::size_t kPlaces = 20000;
+  renderer->AddActor(meshActor(mesh, origin));
+  std::vector<Vector<3>> places = surfaceArea(mesh) > 0.0 ? sampleSurface(mesh, kPlaces) : mesh.vertices;
+  for (Vector<3>& place : places) place -= origin;
+  return places;
+}
+
+std::vector<Vector<3>> Viewer::Parts::addSegments(const SegmentMap& segments) {
   const Box<3> box = boxOf(segments);
   const double wall = std::clamp(0.04 * (box.high - box.low).norm(), 0.05, 2.5);
   for (const auto& actor : segmentActors(segments, origin, wall)) renderer->AddActor(actor);
@@ -196,11 +217,22 @@ std::vector<Vector<3>> Viewer::Parts::addSegments() {
 std::vector<double> Viewer::Parts::errorsOf(const std::vector<GaussianId>& gaussians) {
   std::vector<double> found;
   for (const GaussianId& id : gaussians) {
-    auto known = errors.find(id.scale);
-    if (known == errors.end()) known = errors.emplace(id.scale, gaussianErrors(*map(), id.scale, scene.cloud)).first;
+    const std::pair<ColourBy, int> key(options.colour, id.scale);
+    auto known = errors.find(key);
+    if (known == errors.end()) {
+      std::vector<double> all = options.colour == ColourBy::Contribution ? contributions(*map(), id.scale)
+                                : options.colour == ColourBy::CellError  ? errorsOfCells(*map(), id.scale)
+                                                                        : gaussianErrors(*map(), id.scale, scene.cloud);
+      known = errors.emplace(key, std::move(all)).first;
+    }
     found.push_back(known->second[id.index]);
   }
   return found;
+}
+
+int Viewer::Parts::scaleOfCells() const {
+  const int scale = options.scale.value_or(0);
+  return options.colour == ColourBy::Contribution ? std::min(scale + 1, map()->scales() - 1) : scale;
 }
 
 std::vector<int> Viewer::Parts::scalesOfHierarchy() const {
@@ -213,8 +245,10 @@ std::string Viewer::Parts::title() const {
   std::ostringstream text;
   text << scene.name << "\n";
   if (map() == nullptr) {
-    const SegmentMap& segments = std::get<SegmentMap>(scene.map);
-    text << segments.segments.size() << " segments in " << segments.chains.size() << " chains";
+    if (const auto* const segments = std::get_if<SegmentMap>(&scene.map))
+      text << segments->segments.size() << " segments in " << segments->chains.size() << " chains";
+    else
+      text << std::get<TriangleMesh>(scene.map).triangles.size() << " triangles";
     return text.str();
   }
   if (options.hierarchy) {

@@ -6,6 +6,7 @@
 #include <vtkRenderer.h>
 
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "viewer/actors.h"
@@ -25,7 +26,8 @@ struct Viewer::Parts {
   vtkNew<vtkRenderer> renderer;
   bool is_aimed = false;                                                ///< false: build() must place the camera
   std::map<Detail, std::vector<vtkSmartPointer<vtkActor>>> ellipsoids;  ///< only those of one Detail are visible
-  std::map<int, std::vector<double>> errors;                            ///< per scale, computed on first use
+  /// Of the Gaussians of a scale, for the colours that showsErrors(); computed on first use.
+  std::map<std::pair<ColourBy, int>, std::vector<double>> errors;
 
   const GaussianMap<3>* map() const { return std::get_if<GaussianMap<3>>(&scene.map); }
   /// Throws std::invalid_argument like Viewer().
@@ -39,11 +41,14 @@ struct Viewer::Parts {
 
  private:
   std::vector<Vector<3>> addMap(int height);
-  std::vector<Vector<3>> addSegments();
+  std::vector<Vector<3>> addSegments(const SegmentMap& segments);
+  std::vector<Vector<3>> addMesh(const TriangleMesh& mesh);
   void addEllipsoids(const std::vector<GaussianId>& gaussians, const std::vector<Glyph>& glyphs, int height);
   void addCells(const std::vector<int>& scales, double lift);
   void addLinks(const std::vector<int>& scales, double lift);
   std::vector<double> errorsOf(const std::vector<GaussianId>& gaussians);
+  /// Returns the scale of the cells to show: the coarser one for contributions, which belong to its cells.
+  int scaleOfCells() const;
   std::vector<int> scalesOfHierarchy() const;
   std::string title() const;
 };

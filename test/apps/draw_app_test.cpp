@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // gaussmap draw: ellipses with known answers, read back from the picture.
+#include <algorithm>
 #include <cmath>
 #include <regex>
 
 #include "apps/app_fixture.h"
 #include "gaussmap/io/gmap/map_file.h"
 #include "gaussmap/mapping/build.h"
+#include "gaussmap/mapping/refine.h"
 
 namespace gaussmap::test {
 namespace {
@@ -33,6 +35,23 @@ std::vector<Drawn> ellipsesOf(const std::string& svg) {
 double numberAfter(const std::string& svg, const std::string& text) {
   const std::size_t place = svg.find(text);
   return place == std::string::npos ? std::nan("") : std::stod(svg.substr(place + text.size()));
+}
+
+/// A filled square of the picture [pixels].
+struct Filled {
+  double x, y, width, height;
+  std::string colour;
+};
+
+std::vector<Filled> squaresOf(const std::string& svg) {
+  static const std::regex pattern(
+      "<rect x='([^']+)' y='([^']+)' width='([^']+)' height='([^']+)' fill='(#[^']+)' fill-opacity='0.7'");
+  std::vector<Filled> squares;
+  for (std::sregex_iterator match(svg.begin(), svg.end(), pattern), end; match != end; ++match) {
+    const auto number = [&](std::size_t group) { return std::stod((*match)[group]); };
+    squares.push_back({number(1), number(2), number(3), number(4), (*match)[5]});
+  }
+  return squares;
 }
 
 /// Pixels per metre in a picture of a window of this width.
@@ -138,6 +157,91 @@ TEST_F(DrawApp, PutsMapsIntoPanelsOfOneScale) {
   EXPECT_NE(svg.find(">b&lt;&amp;&gt;.gmap: scale 0 (10 m), 2 Gaussians<"), std::string::npos) << svg;
   const std::string odd = save("gr\xfc\xdf.gmap", {{0, 0, 0}}, {gaussian});  // no UTF-8
   EXPECT_EQ(draw({odd}).find('\xfc'), std::string::npos);
+}
+
+/// Saves a map with cells of 1 m and 4 m. Over x = 0 to 4 m, the cluster is 1 m from two finer Gaussians, which is 10
+/// and 5 of their deviations: error 62.5. Over x = 4 to 8 m, its height is wrong by 0.25 deviations in the lower cell,
+/// error 0.0625, and by 2.5 in the upper one, error 6.25.
+std::string saveWithErrors(const std::string& path) {
+  const auto at = [](double x, double z, double deviation) {
+    return Gaussian<3>{{x, 0, z}, deviation * deviation * Matrix<3>::Identity(), 1.0};
+  };
+  MapScale<3> fine, coarse;
+  fine.keys = {{0, 0, 0}, {2, 0, 0}, {5, 0, 0}, {5, 0, 5}};
+  fine.gaussians = {at(0, 0, 0.1), at(0, 0, 0.2), at(0, 0, 0.1), at(0, 0, 0.1)};
+  fine.parent = {0, 0, 1, 2};
+  coarse.keys = {{0, 0, 0}, {1, 0, 0}, {1, 0, 1}};
+  coarse.first_child = {0, 2, 3, 4};
+  coarse.gaussians = {at(-0.5, -1.5, 1.0), at(-0.5, -1.475, 0.1), at(-0.5, -0.25, 0.1)};
+  for (Gaussian<3>& gaussian : coarse.gaussians) gaussian.mean.y() = -1.5;
+  gaussmap::save(path, GaussianMap<3>({1.0, 4, 2, 0.0}, {fine, coarse}), {}, {true, 3, 0});
+  return path;
+}
+
+TEST_F(DrawApp, ColoursFinerGaussiansByTheirContributionToTheErrorOfTheCell) {
+  const std::string svg = draw({saveWithErrors(own("map.gmap")), "--color", "contribution"});
+  EXPECT_NE(svg.find(">map.gmap: scale 0 (1 m), 4 Gaussians, cells of 4 m<"), std::string::npos) << svg;
+  EXPECT_NE(svg.find(">contribution to the error of the coarse cell [squared sigma]<"), std::string::npos);
+  const std::vector<Drawn> ellipses = ellipsesOf(svg);  // contributions 25, 100, 0.0625, 6.25: 0.0625 to 100
+  ASSERT_EQ(ellipses.size(), 4u);
+  EXPECT_EQ(ellipses[1].colour, "#440154");
+  EXPECT_EQ(ellipses[2].colour, "#fde725");
+  EXPECT_NE(ellipses[0].colour, ellipses[3].colour);
+  EXPECT_TRUE(squaresOf(svg).empty());  // black borders only
+  EXPECT_NE(svg.find("<path fill='none' stroke='black'"), std::string::npos);
+  for (const std::string label : {">0.1<", ">1<", ">10<"}) EXPECT_NE(svg.find(label), std::string::npos) << label;
+}
+
+TEST_F(DrawApp, ColoursCellsByTheirErrorAndColumnsByTheLargestOne) {
+  const std::string map = saveWithErrors(own("map.gmap"));
+  const std::string svg = draw({map, "--color", "cell-error", "--box", "0", "0", "8", "4"});
+  EXPECT_NE(svg.find(">map.gmap: scale 1 (4 m), 3 Gaussians<"), std::string::npos) << svg;
+  EXPECT_NE(svg.find(">error of the cell [squared sigma]<"), std::string::npos);
+  const double scale = scaleOf(svg, 8.0);
+  const std::vector<Filled> squares = squaresOf(svg);
+  ASSERT_EQ(squares.size(), 2u);  // seen from above, the two cells of the right column are one square
+  EXPECT_NEAR(squares[0].x, 0.0, 0.01);
+  EXPECT_NEAR(squares[1].x, 4.0 * scale, 0.01);
+  EXPECT_NEAR(squares[1].width, 4.0 * scale, 0.01);
+  EXPECT_EQ(squares[0].colour, "#440154");  // 62.5
+  EXPECT_EQ(squares[1].colour, "#fde725");  // 6.25, not 0.0625
+  for (const Drawn& ellipse : ellipsesOf(svg)) EXPECT_EQ(ellipse.colour, "#202020");
+}
+
+TEST_F(DrawApp, ShowsTheErrorsOfPlanarMapsToo) {
+  std::vector<Vector<2>> points;
+  for (int i = 0; i < 4000; ++i) points.emplace_back(0.01 * (i % 800), i < 2000 ? 0.3 * (i % 7) : 0.005 * (i % 800));
+  const GaussianMap<2> map = build<2>(points, {0.2, 10, 2, 0.01});
+  const std::vector<double> errors = cellErrors(map, 1).cells;
+  const auto worst = static_cast<std::size_t>(std::max_element(errors.begin(), errors.end()) - errors.begin());
+  const Vector<2> centre = map.grid().centre(map.scale(1).keys[worst], 1);
+  gaussmap::save(own("planar.gmap"), map);
+
+  const std::string svg = draw({own("planar.gmap"), "--color", "cell-error", "--box", "0", "0", "8", "4"});
+  const double scale = scaleOf(svg, 8.0);
+  const std::vector<Filled> squares = squaresOf(svg);
+  EXPECT_EQ(squares.size(), errors.size());
+  std::size_t dark = 0;
+  for (const Filled& square : squares) {
+    if (square.colour != "#440154") continue;
+    ++dark;
+    EXPECT_NEAR(square.x + 0.5 * square.width, centre.x() * scale, 0.01);
+    EXPECT_NEAR(square.y + 0.5 * square.height, (4.0 - centre.y()) * scale, 0.01);
+  }
+  EXPECT_EQ(dark, 1u);
+  EXPECT_EQ(ellipsesOf(draw({own("planar.gmap"), "--color", "contribution"})).size(), map.gaussianCount(0));
+}
+
+TEST_F(DrawApp, RefusesErrorsOfScalesThatHaveNone) {
+  const std::string map = saveWithErrors(own("map.gmap")), svg = own("x.svg");
+  const std::string one = save("one.gmap", {{0, 0, 0}}, {turnedGaussian({0, 0, 0}, 0.0)});
+  expectUsageError("no scale is coarser than scale 1; use a finer --scale",
+                   {"draw", map, "-o", svg, "--color", "contribution", "--scale", "1"});
+  expectUsageError("no scale is finer", {"draw", map, "-o", svg, "--color", "cell-error", "--scale", "0"});
+  expectUsageError("no scale is coarser", {"draw", one, "-o", svg, "--color", "contribution"});
+  expectUsageError("no scale is finer", {"draw", one, "-o", svg, "--color", "cell-error"});
+  expectUsageError("--color", {"draw", map, "-o", svg, "--color", "cell-error", "--overlay"});
+  expectUsageError("--color", {"draw", map, "-o", svg, "--color", "weight"});
 }
 
 TEST_F(DrawApp, LosesNothingFarFromTheOrigin) {

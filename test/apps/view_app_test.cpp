@@ -54,6 +54,10 @@ TEST_F(ViewApp, EveryOptionChangesThePicture) {
                                                {"--scale", "2"},
                                                {"--color", "normal"},
                                                {"--color", "error"},
+                                               {"--color", "contribution"},
+                                               {"--color", "cell-error"},
+                                               {"--mesh", scene("truth.ply").string()},
+                                               {"--span", "7"},
                                                {"--sigma", "1"},
                                                {"--cells"},
                                                {"--hierarchy"},
@@ -80,6 +84,19 @@ TEST_F(ViewApp, ShowsSegmentMaps) {
   expectUsageError("--scale", {"view", own("walls.pcd"), "--png", own("b.png"), "--scale", "1"});
 }
 
+TEST_F(ViewApp, ShowsMeshes) {
+  const std::string said =
+      succeed({"view", scene("truth.ply").string(), "--png", own("mesh.png"), "--size", "320x200"});
+  EXPECT_NE(said.find("320 x 200"), std::string::npos) << said;
+  EXPECT_GT(contentsOf(own("mesh.png")).size(), 2000u);
+  for (const std::vector<std::string>& option :
+       {std::vector<std::string>{"--scale", "1"}, {"--leaves"}, {"--color", "height"}, {"--cells"}, {"--hierarchy"}}) {
+    std::vector<std::string> words = {"view", scene("truth.ply").string(), "--png", own("b.png")};
+    words.insert(words.end(), option.begin(), option.end());
+    expectUsageError(option[0] + ": not for meshes", words);
+  }
+}
+
 TEST_F(ViewApp, SaysInOneLineThatThereIsNothingToDrawOn) {
   expectDataError("no display", {"view", map()});
   const Environment no_egl("__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent.json");
@@ -97,6 +114,12 @@ TEST_F(ViewApp, RefusesWrongUsageAndWrongData) {
   expectUsageError("--leaves", {"view", map(), "--png", png, "--scale", "1", "--leaves"});
   expectUsageError("--color", {"view", map(), "--png", png, "--color", "pink"});
   expectUsageError("CLOUD", {"view", map(), "--png", png, "--color", "error", "--scale", "0"});
+  expectUsageError("no scale is coarser", {"view", map(), "--png", png, "--color", "contribution", "--scale", "2"});
+  expectUsageError("no scale is finer", {"view", map(), "--png", png, "--color", "cell-error", "--scale", "0"});
+  expectUsageError("--leaves", {"view", map(), "--png", png, "--color", "cell-error", "--leaves"});
+  expectUsageError("--span", {"view", map(), "--png", png, "--span", "0"});
+  expectUsageError("--zoom", {"view", map(), "--png", png, "--span", "3", "--zoom", "2"});
+  expectDataError("no.ply", {"view", map(), "--png", png, "--mesh", own("no.ply")});
   expectUsageError("--zoom", {"view", map(), "--png", png, "--zoom", "nan"});
   expectUsageError("map", {"view"});
   expectDataError("no.gmap", {"view", own("no.gmap"), "--png", png});

@@ -67,6 +67,57 @@ TEST(Colouring, WhatIsNotFiniteIsGrey) {
   EXPECT_EQ(colouring.high, 0.5);
 }
 
+/// Two cells of 4 m over cells of 1 m. Their clusters are 1 m from each of the finer Gaussians of the left cell, which
+/// is 10 and 5 deviations, and exact in the right cell.
+GaussianMap<3> leftAndRight() {
+  const auto at = [](double x, double y, double z, double deviation) {
+    return Gaussian<3>{{x, y, z}, deviation * deviation * Matrix<3>::Identity(), 1.0};
+  };
+  MapScale<3> fine, coarse;
+  fine.keys = {{0, 0, 0}, {2, 0, 0}, {5, 0, 0}};
+  fine.gaussians = {at(0, 0, 0, 0.1), at(0, 0, 0, 0.2), at(0, 0, 0, 0.1)};
+  fine.parent = {0, 0, 1};
+  coarse.keys = {{0, 0, 0}, {1, 0, 0}};
+  coarse.first_child = {0, 2, 3};
+  coarse.gaussians = {at(-0.5, -1.5, -1.5, 1.0), at(-0.5, -1.5, -1.5, 0.1)};
+  return GaussianMap<3>({1.0, 4, 2, 0.0}, {fine, coarse});
+}
+
+TEST(Colouring, OfErrorsOfCellsIsLogarithmic) {
+  const GaussianMap<3> map = leftAndRight();
+  const std::vector<double> fine = contributions(map, 0), coarse = errorsOfCells(map, 1);
+  ASSERT_EQ(fine.size(), 3u);
+  EXPECT_NEAR(fine[0], 100.0, 1e-9);
+  EXPECT_NEAR(fine[1], 25.0, 1e-9);
+  EXPECT_NEAR(fine[2], 0.0, 1e-9);
+  ASSERT_EQ(coarse.size(), 2u);
+  EXPECT_NEAR(coarse[0], 62.5, 1e-9);
+  EXPECT_NEAR(coarse[1], 0.0, 1e-9);
+  for (const double error : contributions(map, 1)) EXPECT_TRUE(std::isnan(error));
+  for (const double error : errorsOfCells(map, 0)) EXPECT_TRUE(std::isnan(error));
+
+  const std::vector<GaussianId> five(5);
+  const Colouring colouring =
+      colouringOf(map, five, {ColourBy::Contribution, Vector<3>::UnitZ()}, {1.0, 10.0, 100.0, 0.0, std::nan("")});
+  EXPECT_TRUE(colouring.is_logarithmic);
+  EXPECT_EQ(colouring.low, 1.0);
+  EXPECT_EQ(colouring.high, 100.0);
+  EXPECT_EQ(colouring.colours[0], viridis(1.0));  // large errors are dark
+  EXPECT_EQ(colouring.colours[1], viridis(0.5));  // 10 is halfway from 1 to 100
+  EXPECT_EQ(colouring.colours[2], viridis(0.0));
+  EXPECT_EQ(colouring.colours[3], viridis(1.0));  // no error
+  EXPECT_EQ(colouring.colours[4], (Colour{150, 150, 150}));
+  EXPECT_EQ(colouring.bar.front(), viridis(1.0 - 0.5 / 256));
+}
+
+TEST(Colouring, LogarithmicRangesHaveLimits) {
+  using Range = std::pair<double, double>;
+  EXPECT_EQ(logColourRange({3.0, 1e9, 2e9, -1.0, 0.0, std::nan("")}), Range(2e5, 2e9));
+  EXPECT_EQ(logColourRange({5.0, 20.0}), Range(5.0, 20.0));
+  EXPECT_EQ(logColourRange({6.0, 6.0}), Range(3.0, 12.0));
+  EXPECT_EQ(logColourRange({0.0, HUGE_VAL}), Range(0.1, 10.0));
+}
+
 TEST(GaussianErrors, AreTheMeanDistanceToTheCloudOrElseToTheFinerDetail) {
   const GaussianMap<3> map = boards();
   std::vector<Vector<3>> cloud;  // 0.5 m above the lower board

@@ -100,7 +100,7 @@ TEST(Viewer, KeysChangeSizeScaleColourAndWhatIsShown) {
   EXPECT_TRUE(viewer.press("minus"));
   EXPECT_DOUBLE_EQ(viewer.options().sigma, 2.0);
   EXPECT_FALSE(viewer.press("F7"));
-  for (int i = 0; i < 6; ++i) EXPECT_TRUE(viewer.press("c"));
+  for (int i = 0; i < kColourings; ++i) EXPECT_TRUE(viewer.press("c"));
   EXPECT_EQ(viewer.options().colour, ColourBy::Height);  // once round
 }
 
@@ -132,9 +132,55 @@ TEST(Viewer, ShowsSegmentsAsWalls) {
   EXPECT_TRUE(viewer.press("t"));
 }
 
+/// A square of 4 m x 2 m at z = 1 m, as two triangles.
+TriangleMesh square(const Vector<3>& corner) {
+  TriangleMesh mesh;
+  mesh.vertices = {corner, corner + Vector<3>(4, 0, 0), corner + Vector<3>(4, 2, 0), corner + Vector<3>(0, 2, 0)};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  return mesh;
+}
+
+/// The number of pixels of a mesh in the middle part of a picture: the background is bluish, meshes are yellowish.
+double meshPixels(const Picture& picture) {
+  double count = 0.0;
+  for (const auto& pixel : picture.pixels) count += pixel[0] > pixel[2] + 5 ? 1.0 : 0.0;
+  return count;
+}
+
+TEST(Viewer, ShowsAMeshInItsTrueSize) {
+  ViewOptions options;
+  options.view = viewFromAbove(Vector<3>::UnitZ());
+  options.view.span = 5.0;  // 400 pixels are 5 m, so the mesh has 320 x 160 pixels
+  for (const Vector<3>& corner : {Vector<3>(1, 2, 1), Vector<3>(1e7, -2e7, 1)}) {
+    Viewer viewer({"mesh", square(corner), {}}, options);
+    EXPECT_NEAR(meshPixels(viewer.picture(600, 400)), 320.0 * 160.0, 600.0);
+    EXPECT_FALSE(viewer.press("2"));
+  }
+  options.view.span = 10.0;
+  Viewer viewer({"mesh", square({1, 2, 1}), {}}, options);
+  EXPECT_NEAR(meshPixels(viewer.picture(600, 400)), 160.0 * 80.0, 300.0);
+}
+
+TEST(Viewer, ShowsAMeshWithTheMapUntilMIsPressed) {
+  ViewOptions options = fromAbove();
+  options.view.span = 30.0;
+  ViewScene scene{"one", oneGaussian(0.0), {}};
+  scene.mesh = square({2, 14, -1});
+  Viewer viewer(scene, options);
+  const double with_mesh = meshPixels(viewer.picture(400, 400));
+  ASSERT_TRUE(viewer.press("m"));
+  const double without = meshPixels(viewer.picture(400, 400));
+  EXPECT_NEAR(with_mesh - without, 8.0 * std::pow(400.0 / 30.0, 2), 60.0);
+}
+
 TEST(Viewer, RefusesWhatItCannotShow) {
   EXPECT_THROW(Viewer({"empty", GaussianMap<3>({1.0, 2, 1, 0.0}), {}}), std::invalid_argument);
   EXPECT_THROW(Viewer({"empty", SegmentMap(), {}}), std::invalid_argument);
+  EXPECT_THROW(Viewer({"empty", TriangleMesh(), {}}), std::invalid_argument);
+  TriangleMesh broken = square({0, 0, 0});
+  broken.triangles[0][0] = 9;
+  EXPECT_THROW(Viewer({"broken", broken, {}}), std::invalid_argument);
+  EXPECT_THROW(Viewer({"broken", oneGaussian(0.0), {}, broken}), std::invalid_argument);
   const auto refuses = [](auto change) {
     ViewOptions options;
     change(options);
@@ -145,6 +191,8 @@ TEST(Viewer, RefusesWhatItCannotShow) {
   refuses([](ViewOptions& options) { options.sigma = 0.0; });
   refuses([](ViewOptions& options) { options.sigma = std::nan(""); });
   refuses([](ViewOptions& options) { options.view.zoom = -1.0; });
+  refuses([](ViewOptions& options) { options.view.span = 0.0; });
+  refuses([](ViewOptions& options) { options.view.span = std::nan(""); });
   refuses([](ViewOptions& options) { options.view.direction.setZero(); });
   refuses([](ViewOptions& options) { options.up.setConstant(std::nan("")); });
 }

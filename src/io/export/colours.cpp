@@ -46,4 +46,16 @@ std::pair<double, double> colourRange(std::vector<double> values) {
   return high > low ? std::make_pair(low, high) : std::make_pair(low - 0.5, low + 0.5);
 }
 
+std::pair<double, double> logColourRange(std::vector<double> values) {
+  constexpr double kLargestFactor = 1e4;
+  const auto hasNone = [](double value) { return !(std::isfinite(value) && value > 0.0); };
+  values.erase(std::remove_if(values.begin(), values.end(), hasNone), values.end());
+  if (values.empty()) return {0.1, 10.0};
+  std::sort(values.begin(), values.end());
+  const std::size_t last = values.size() - 1;
+  const double low = values[last / 100], high = values[last - last / 100];
+  if (!(high > low)) return {0.5 * low, 2.0 * high};
+  return {std::max(low, high / kLargestFactor), high};
+}
+
 }  // namespace gaussmap::detail

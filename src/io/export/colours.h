@@ -27,4 +27,9 @@ GAUSSMAP_API Colour normalColour(const Vector<3>& normal);
 /// result is 0 and 1 if no value is finite.
 GAUSSMAP_API std::pair<double, double> colourRange(std::vector<double> values);
 
+/// Returns the values at the two ends of a logarithmic colour scale: the 1 % and the 99 % quantile of the positive
+/// values, but at most a factor of 10,000 apart. If both are equal, the ends are a factor of 2 below and above. Values
+/// that are not finite are ignored; the result is 0.1 and 10 if no value is positive.
+GAUSSMAP_API std::pair<double, double> logColourRange(std::vector<double> values);
+
 }  // namespace gaussmap::detail
