@@ -68,10 +68,11 @@ double varianceOf(const SegmentMap& map) {
   return weight > 0.0 ? sum / weight : 0.0;
 }
 
-/// Adds all scans to a map and measures it.
-LealMeasure measure(const LealData& data, LealMethod method, double threshold, double min_length, std::uint64_t seed) {
+/// Adds all scans to a map and measures it. `is_optimised`: map() changes the segments.
+LealMeasure measure(const LealData& data, const SegmentFitterOptions& options,
+                    const std::shared_ptr<SegmentUtility>& utility, bool is_optimised) {
   LealMeasure result;
-  SegmentFitter fitter(optionsOf(method, min_length, seed), invariant(method, min_length, threshold));
+  SegmentFitter fitter(options, utility);
   SegmentStatistics last;
   for (const LaserScan& scan : data.scans) {
     last = fitter.add(scan);
@@ -81,7 +82,7 @@ LealMeasure measure(const LealData& data, LealMethod method, double threshold, d
   const SegmentMap map = fitter.map();
   result.segments = static_cast<double>(map.segments.size());
   // The statistics weigh by particles, as the paper does. They do not know the map after the optimisation.
-  result.normal_variance = method == LealMethod::Default ? varianceOf(map) : last.normal_variance;
+  result.normal_variance = is_optimised ? varianceOf(map) : last.normal_variance;
   result.length = map.totalLength();
   const HoldOutScore test = scoreHoldOut(map, data.test);
   result.within_5cm = test.within_5cm;
@@ -93,11 +94,18 @@ LealMeasure measure(const LealData& data, LealMethod method, double threshold, d
   const WallScore walls = scoreWalls(map, data.walls);
   result.recall = walls.recall;
   result.precision = walls.precision;
+  result.true_length = 0.0;
   for (const Segment& wall : data.walls) result.true_length += wall.length();
   if (walls.matched == 0) return result;  // all walls are too short
   result.offset_rms = walls.offset_rms;
   result.angle_rms = walls.angle_rms;
   return result;
+}
+
+/// The same for a method of the study.
+LealMeasure measure(const LealData& data, LealMethod method, double threshold, double min_length, std::uint64_t seed) {
+  return measure(data, optionsOf(method, min_length, seed), invariant(method, min_length, threshold),
+                 method == LealMethod::Default);
 }
 
 LealMeasure meanOf(const std::vector<LealMeasure>& runs) {
@@ -308,6 +316,25 @@ std::vector<LealStudyRow> lealStudy(const LealData& data, int seeds) {
   constexpr double kNotUsed = std::numeric_limits<double>::quiet_NaN();
   rows.push_back(
       {LealMethod::Default, kNotUsed, measure(data, LealMethod::Default, kDefaultThreshold, 1.0, 1), kNotUsed});
+  return rows;
+}
+
+std::vector<LealParticleRow> lealParticles(const LealData& data, int seeds) {
+  std::vector<LealParticleRow> rows;
+  const auto add = [&](int samples, double per_metre, bool in_bins) {
+    std::vector<LealMeasure> runs;
+    for (int seed = 1; seed <= seeds; ++seed) {
+      SegmentFitterOptions options = optionsOf(LealMethod::AsPrinted, 1.0, static_cast<std::uint64_t>(seed));
+      options.particles.samples = samples;
+      options.particles.per_metre = per_metre;
+      if (in_bins) options.particles.limit = ParticleLimit::Bins;
+      runs.push_back(measure(data, options, invariant(LealMethod::AsPrinted, 1.0), false));
+    }
+    rows.push_back({samples, per_metre, in_bins, meanOf(runs)});
+  };
+  for (const int samples : {3, 10, 30, 100}) add(samples, 300.0, false);
+  for (const double per_metre : {100.0, 1000.0, 3000.0}) add(30, per_metre, false);
+  add(30, 300.0, true);
   return rows;
 }
 

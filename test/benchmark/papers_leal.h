@@ -52,7 +52,8 @@ struct LealMeasure {
   double within_5cm = 0.0, within_10cm = 0.0, rms = 0.0, predicted_10cm = 0.0, blocked_early = 0.0;
   // True walls within 5 cm, see WallScore: shares, [m], [rad]. NaN without walls, or if all walls are too short.
   double recall = std::numeric_limits<double>::quiet_NaN(), precision = recall, offset_rms = recall, angle_rms = recall;
-  double true_length = 0.0;  ///< length of the true walls [m]; a longer map is a zigzag that follows the noise
+  /// Length of the true walls [m]; a longer map is a zigzag that follows the noise. NaN without walls.
+  double true_length = recall;
 };
 
 /// Figs. 7 and 8: the effect of l_min.
@@ -66,6 +67,17 @@ struct LealStudyRow {
 /// the particles of simulated scans), each for l_min = 0.3, 0.5, 0.7, 1, 1.25, 1.5, 2, 2.5, 3 m, then one row of
 /// Default. The paper does not give sigma_th. `seeds`: runs of AsPrinted with different particles.
 std::vector<LealStudyRow> lealStudy(const LealData& data, int seeds);
+
+/// Sec. 5: "30 samples, at most 300 particles per metre".
+struct LealParticleRow {
+  int samples = 30;          ///< M
+  double per_metre = 300.0;  ///< maximum number of particles per metre
+  bool in_bins = false;      ///< false: the limit of the paper, per segment; true: per 0.25 m of the segment
+  LealMeasure map;
+};
+/// Returns AsPrinted (l_min 1 m, sigma_th 6 cm) with other numbers of particles: M = 3, 10, 30, 100 with 300 per metre,
+/// then 100, 1000 and 3000 per metre with M = 30, then 300 per metre with a limit per bin.
+std::vector<LealParticleRow> lealParticles(const LealData& data, int seeds);
 
 /// Figs. 4 and 5: a part of 7 m x 8 m, l_min = 1.5 m, a = 0.53, viewpoint-invariant and viewpoint-dependent.
 struct LealExampleRow {

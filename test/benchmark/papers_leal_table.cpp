@@ -18,6 +18,13 @@ std::string thresholdText(double threshold) {
   return text;
 }
 
+std::string trueLengthText(const LealMeasure& map) {
+  if (std::isnan(map.true_length)) return "-";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f", map.true_length);
+  return text;
+}
+
 void printStudy(const LealData& data, int seeds) {
   std::printf(
       "| %s, Figs. 7 and 8 | sigma_th [cm] | l_min [m] | normal deviation [cm] | segments | splits | merges | "
@@ -29,12 +36,30 @@ void printStudy(const LealData& data, int seeds) {
     std::printf("| %s | ", nameOf(row.method).c_str());
     std::printf(std::isnan(row.min_length) ? "%s | -" : "%s | %.2f", thresholdText(row.sigma_threshold).c_str(),
                 row.min_length);
-    std::printf(" | %.2f | %.0f | %.0f | %.0f | %.1f (%.1f) | %.3f | %.3f | %.2f | %.3f | %.3f | ",
-                centimetres(map.normal_variance), map.segments, map.splits, map.merges, map.length, map.true_length,
-                map.within_5cm, map.within_10cm, 100.0 * map.rms, map.predicted_10cm, map.blocked_early);
+    std::printf(" | %.2f | %.0f | %.0f | %.0f | %.1f (%s) | %.3f | %.3f | %.2f | %.3f | %.3f | ",
+                centimetres(map.normal_variance), map.segments, map.splits, map.merges, map.length,
+                trueLengthText(map).c_str(), map.within_5cm, map.within_10cm, 100.0 * map.rms, map.predicted_10cm,
+                map.blocked_early);
     for (const double value : {map.recall, map.precision, 1000.0 * map.offset_rms})
       std::printf(std::isnan(value) ? "- | " : "%.3f | ", value);
     std::printf("\n");
+    std::fflush(stdout);
+  }
+  std::printf("\n");
+}
+
+void printParticles(const LealData& data, int seeds) {
+  std::printf(
+      "| %s, sec. 5: l_min 1 m, M | per metre | limit | segments | length (true) [m] | cov5 | cov10 | rms [cm] | r10 | "
+      "viol | recall |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|\n",
+      data.name.c_str());
+  for (const LealParticleRow& row : lealParticles(data, seeds)) {
+    const LealMeasure& map = row.map;
+    std::printf("| %d | %.0f | %s | %.0f | %.1f (%s) | %.3f | %.3f | %.2f | %.3f | %.3f | ", row.samples, row.per_metre,
+                row.in_bins ? "bins" : "segment", map.segments, map.length, trueLengthText(map).c_str(), map.within_5cm,
+                map.within_10cm, 100.0 * map.rms, map.predicted_10cm, map.blocked_early);
+    std::printf(std::isnan(map.recall) ? "- |\n" : "%.3f |\n", map.recall);
     std::fflush(stdout);
   }
   std::printf("\n");
@@ -80,6 +105,7 @@ void printObserver(const LealData& data) {
 
 void printLeal(const LealData& data, int seeds) {
   printStudy(data, seeds);
+  printParticles(data, seeds);
   printExample(data);
   printObserver(data);
 }
