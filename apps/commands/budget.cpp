@@ -30,7 +30,8 @@ bool isUnrefined(const GaussianMap<D>& map) {
 }
 
 /// The options of RefineMethod::Insert. The seed is an older option, added by addBudgetOptions().
-void addInsertOptions(Command& command, RefineOptions& refine) {
+void addInsertOptions(Command& command, BudgetInput& input) {
+  RefineOptions& refine = input.refine;
   const RefineOptions paper = RefineOptions::yguel2009();
   const std::string group = "With --method insert";
   command
@@ -55,6 +56,10 @@ void addInsertOptions(Command& command, RefineOptions& refine) {
   command
       .flag("--learning-factor", refine.learning_factor,
             "multiply the error of eq. (6) by 1 - learning rate of the finer Gaussians, as in the paper")
+      .group(group);
+  command
+      .choice("--distance", input.distance, Command::wordsOf(kDistances),
+              "distance from a finer Gaussian to a cluster; default: kl, the KL divergence, as in the paper")
       .group(group);
 }
 
@@ -183,12 +188,8 @@ void addBudgetOptions(Command& command, BudgetInput& input) {
               insert: start with one Gaussian per cell and add clusters, as in the paper)")
       .rare();
   addCostOption(command, input);
-  command
-      .choice("--distance", input.distance, Command::wordsOf(kDistances),
-              "distance from a Gaussian to a cluster with --method insert (default: kl, the KL divergence)")
-      .rare();
   command.seed(input.refine.seed, "seed of the random swaps of --method insert").rare();
-  addInsertOptions(command, input.refine);
+  addInsertOptions(command, input);
 }
 
 void checkBudget(const BudgetInput& input) {
@@ -196,7 +197,6 @@ void checkBudget(const BudgetInput& input) {
   if (input.method == "insert" && (!input.max_bytes.empty() || input.max_error > 0.0))
     throw UsageError("--method insert: supports only --budget and --max-gaussians");
   if (input.method == "insert" && input.cost) throw UsageError("--cost: only for --method agglomerate");
-  if (input.method != "insert" && input.distance) throw UsageError("--distance: only for --method insert");
   const std::string option = insertOption(input);
   if (input.method != "insert" && !option.empty()) throw UsageError(option + ": only for --method insert");
 }
@@ -207,7 +207,8 @@ std::string insertOption(const BudgetInput& input) {
   if (given.max_swaps != usual.max_swaps) return "--max-swaps";
   if (given.seed_rule != usual.seed_rule) return "--seed-rule";
   if (given.only_occupied) return "--only-occupied";
-  return given.learning_factor ? "--learning-factor" : "";
+  if (given.learning_factor) return "--learning-factor";
+  return input.distance ? "--distance" : "";
 }
 
 template <int D>

@@ -2,7 +2,8 @@
 #include "papers/figures.h"
 
 #include <algorithm>
-#include <set>
+#include <iterator>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -61,12 +62,13 @@ void drawFigure7(const Sequence<2>& sequence, Report& report) {
   const double side = map.grid().side(coarsest);
   Box<2> window = app::emptyBox();
   for (const CellKey<2>& key : map.scale(coarsest).keys) {
-    panel.squares.push_back({Vector<2>(key[0], key[1]) * side, Vector<2>(key[0] + 1.0, key[1] + 1.0) * side});
-    app::include(window, panel.squares.back().low);
-    app::include(window, panel.squares.back().high);
+    const Box<2> cell{Vector<2>(key[0], key[1]) * side, Vector<2>(key[0] + 1.0, key[1] + 1.0) * side};
+    panel.squares.push_back({cell, std::nullopt});
+    app::include(window, cell.low);
+    app::include(window, cell.high);
   }
   const std::string name = "Yguel-figure-7";
-  app::drawMaps({panel}, window, report.pictureFile(name));
+  app::drawMaps({panel}, window, app::BarOptions(), report.pictureFile(name));
   report.showPicture(name, "Like Fig. 7 of Yguel 2009: " + sequence.name +
                                ", on line as printed, at most 4 Gaussians "
                                "per coarse cell");
