@@ -39,8 +39,8 @@ std::vector<ClusteringDistanceRow> clusteringDistances(const ClusteringDistanceO
 /// Returns all rows as a Markdown table.
 std::string clusteringDistanceRows(const std::vector<ClusteringDistanceRow>& rows);
 /// Returns one Markdown table with a row per distance and seed and a column per data set. The figures are geometric
-/// means over budgets and scales of the ratios to the KL divergence with the same seed, budget and scale: distortion,
-/// 99 %, 95 %, mean, time.
+/// means over budgets and scales of the ratios to the default, the KL divergence with ClusterSeed::ParentCovariance, at
+/// the same budget and scale: distortion, 99 %, 95 %, mean, time.
 std::string clusteringDistanceSummary(const std::vector<ClusteringDistanceRow>& rows);
 
 }  // namespace gaussmap::benchmark
