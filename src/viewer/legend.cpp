@@ -13,6 +13,8 @@
 #include <cmath>
 
 namespace gaussmap {
+using namespace detail;
+
 namespace {
 
 constexpr double kInk = 0.15;

@@ -38,12 +38,14 @@ struct ViewOptions {
   ColourBy colour = ColourBy::Height;
   /// Scale to show; std::nullopt: leaves(), the map at its finest.
   std::optional<int> scale;
-  double sigma = 2.0;      ///< half axes of the ellipsoids, in standard deviations
-  bool cells = false;      ///< show the occupied cells as boxes
-  bool cloud = true;       ///< show the cloud, if there is one
-  bool mesh = true;        ///< show the mesh, if there is one
-  bool hierarchy = false;  ///< show all scales one above the other, linked to their children: Yguel 2009, Fig. 6
-  bool help = false;       ///< show the keys on the screen
+  double sigma = 2.0;  ///< half axes of the ellipsoids, in standard deviations
+  bool cells = false;  ///< show the occupied cells as boxes
+  bool cloud = true;   ///< show the cloud, if there is one
+  bool mesh = true;    ///< show the mesh, if there is one
+  /// Show all scales one above the other, linked to their children: Yguel 2009, Fig. 6. Of many links, an even
+  /// selection is shown.
+  bool hierarchy = false;
+  bool help = false;  ///< show the keys on the screen
   /// Direction of heights and of the lift between scales. It points up in the picture (y does in a view from above).
   Vector<3> up = Vector<3>::UnitZ();
   ViewPoint view;

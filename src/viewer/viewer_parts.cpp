@@ -22,6 +22,7 @@ using namespace detail;
 namespace {
 
 constexpr std::size_t kMaxSmooth = 200000;  // Gaussians that can be moved smoothly
+constexpr std::size_t kMaxLinks = 25000;    // between two scales; more of them would hide the Gaussians
 
 Vector<3> centreOf(const Glyph& glyph) {
   return {double{glyph.centre[0]}, double{glyph.centre[1]}, double{glyph.centre[2]}};
@@ -187,12 +188,13 @@ void Viewer::Parts::addLinks(const std::vector<int>& scales, double lift) {
   const auto place = [&](std::size_t index, int s) {
     return Vector<3>(gaussianAbout(origin, *map(), index, s).mean + lift * s * up());
   };
-  std::vector<std::pair<Vector<3>, Vector<3>>> links;
-  for (const int s : scales)
-    if (s + 1 < map()->scales())
-      for (std::size_t i = 0; i < map()->gaussianCount(s); ++i)
-        links.emplace_back(place(i, s), place(map()->parentOf(i, s), s + 1));
-  renderer->AddActor(linkActor(links));
+  for (const int s : scales) {
+    if (s + 1 == map()->scales()) continue;
+    const std::size_t count = map()->gaussianCount(s), step = (count + kMaxLinks - 1) / kMaxLinks;
+    std::vector<std::pair<Vector<3>, Vector<3>>> links;
+    for (std::size_t i = 0; i < count; i += step) links.emplace_back(place(i, s), place(map()->parentOf(i, s), s + 1));
+    renderer->AddActor(linkActor(links));
+  }
 }
 
 std::vector<Vector<3>> Viewer::Parts::addMesh(const TriangleMesh& mesh) {

@@ -224,6 +224,11 @@ TEST_F(PlanarMaps, ViewSavesAPicture) {
   succeed({"view", room(), "--png", own("iso.png"), "--size", "320x200", "--view", "iso"});
   EXPECT_TRUE(contentsOf(own("top.png")) == contentsOf(own("also_top.png")));
   EXPECT_FALSE(contentsOf(own("top.png")) == contentsOf(own("iso.png")));
+  // From above, the scales of a hierarchy would hide each other, and all heights are equal.
+  succeed({"view", room(), "--png", own("lifted.png"), "--size", "320x200", "--hierarchy"});
+  succeed({"view", room(), "--png", own("also.png"), "--size", "320x200", "--hierarchy", "--view", "iso", "--color",
+           "scale"});
+  EXPECT_TRUE(contentsOf(own("lifted.png")) == contentsOf(own("also.png")));
 }
 
 TEST_F(PlanarMaps, FinishMakesAFinalMap) {

@@ -3,12 +3,15 @@
 #include "viewer/viewer.h"
 
 #include <gtest/gtest.h>
+#include <vtkActorCollection.h>
 #include <vtkDataArray.h>
 #include <vtkDataSet.h>
 #include <vtkMapper.h>
 #include <vtkPointData.h>
+#include <vtkPolyData.h>
 
 #include <cmath>
+#include <set>
 
 #include "gaussmap/mapping/build.h"
 #include "map/random_clouds.h"
@@ -214,6 +217,22 @@ TEST(CentreActor, ShowsAnEvenChoiceOfManyCentresEachInItsColour) {
     ASSERT_EQ(data->GetPoint(k)[0], 3.0 * double(k));
     ASSERT_EQ(data->GetPointData()->GetScalars()->GetComponent(k, 0), double(3 * k % 251));
   }
+}
+
+TEST(Viewer, LinksAnEvenSelectionOfManyGaussiansToTheirParents) {
+  std::vector<Vector<3>> points;  // one per finest cell: 28,000 finest cells, 280 and 4 coarse ones
+  for (int x = 0; x < 200; ++x)
+    for (int y = 0; y < 140; ++y) points.emplace_back(x + 0.5, y + 0.5, 0.5);
+  Viewer::Parts parts;
+  parts.scene.map = build<3>(points, {1.0, 10, 3, 0.1});
+  parts.options.hierarchy = true;
+  parts.build(200, 100);
+  std::multiset<vtkIdType> links;  // per pair of scales
+  vtkActorCollection* const actors = parts.renderer->GetActors();
+  for (actors->InitTraversal(); vtkActor* const actor = actors->GetNextActor();)
+    if (auto* const data = vtkPolyData::SafeDownCast(actor->GetMapper()->GetInputDataObject(0, 0)))
+      if (data->GetNumberOfLines() > 0) links.insert(data->GetNumberOfLines());
+  EXPECT_EQ(links, (std::multiset<vtkIdType>{280, 14000}));  // each second of 28,000: 25,000 at most
 }
 
 TEST(Viewer, ShowsTheEllipsoidsInOneDetailAtATime) {
