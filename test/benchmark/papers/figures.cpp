@@ -2,6 +2,7 @@
 #include "papers/figures.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <optional>
 #include <string>
@@ -76,7 +77,9 @@ void drawFigure7(const Sequence<2>& sequence, Report& report) {
 
 void drawExamples(const LealResults& results, Report& report) {
   for (const benchmark::LealExampleRow& row : results.example) {
-    if (row.method != benchmark::LealMethod::AsPrinted) continue;
+    if (row.method != benchmark::LealMethod::AsPrinted ||
+        std::abs(row.sigma_threshold - results.sigma_threshold) > 1e-9)
+      continue;
     app::SegmentPicture picture;
     const Box<2>& window = results.data.window;
     const auto isInside = [&](const Vector<2>& point) {

@@ -27,7 +27,7 @@
 namespace gaussmap::papers {
 namespace {
 
-constexpr int kLealSeeds = 3;  // of the particles
+constexpr int kLealSeeds = 2;  // of the particles
 
 struct Options {
   std::string data, output = "reproduction.md";
@@ -101,13 +101,18 @@ benchmark::LealData first(benchmark::LealData data, std::size_t scans) {
 }
 
 void runLealOnAll(const Options& options, const Progress& progress, Results& results) {
-  std::vector<benchmark::LealData> data{first(benchmark::simulatedPlan(), options.scans)};
-  if (!options.data.empty())
-    data.push_back(
-        first(benchmark::logOf(std::filesystem::path(options.data) / "carmen_intel", "Intel lab"), options.scans));
+  constexpr double kOfParticles = 0.028, kOfPoses = 0.06;  // sigma_th [m]
+  std::vector<std::pair<benchmark::LealData, double>> data{
+      {first(benchmark::simulatedPlan(), options.scans), kOfParticles},
+      {first(benchmark::roughHall(), options.scans), kOfParticles}};
+  if (!options.data.empty()) {
+    const std::filesystem::path folder = std::filesystem::path(options.data) / "carmen_intel";
+    data.emplace_back(first(benchmark::logOf(folder, "Intel lab"), options.scans), kOfPoses);
+  }
   results.leal.resize(data.size());
-  detail::parallelFor(data.size(), 0, 1,
-                      [&](std::size_t i) { results.leal[i] = runLeal(std::move(data[i]), kLealSeeds); });
+  detail::parallelFor(data.size(), 0, 1, [&](std::size_t i) {
+    results.leal[i] = runLeal(std::move(data[i].first), data[i].second, kLealSeeds);
+  });
   progress.done("segments");
 }
 
