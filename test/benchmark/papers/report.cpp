@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "papers/report.h"
 
+#include <cmath>
 #include <utility>
 
 #include "common/report.h"
@@ -75,7 +76,7 @@ void Report::save(const std::string& preface) const {
 }
 
 std::string number(double value) {
-  return app::formatted("%.3g", value);
+  return app::formatted(std::abs(value) < 1000.0 ? "%.3g" : "%.0f", value);
 }
 
 std::string times(double factor) {

@@ -45,7 +45,7 @@ class Report {
   std::vector<Claim> claims_;
 };
 
-/// A number with three significant digits.
+/// A number with three significant digits, from 1000 on a whole number.
 std::string number(double value);
 /// "3.4 x": a factor with two significant digits.
 std::string times(double factor);
