@@ -12,18 +12,18 @@ std::vector<Option> addEvidenceOptions(Command& command, const EvidenceConstants
                      "log-odds that a scan which hits a cell adds to the cell"),
       command.number("--miss", constants.occupancy.miss, kLeast, kMost,
                      "log-odds that a scan which sees through a cell takes from the cell"),
-      command.number(
-          "--tolerance", constants.visibility.tolerance, 0.0, kFarthest,
-          "a ray sees through a cell only if it ends more than this behind it [m]; default: 0.3, or 15 cells "
-          "if less"),
+      command.number("--tolerance", constants.visibility.tolerance, 0.0, kFarthest,
+                     "a ray sees through a cell only if it ends more than this behind it [m]; default: 0.3, less for "
+                     "cells below 0.015"),
       command.number("--clearance", constants.visibility.clearance, 0.0, kFarthest,
                      "a ray sees through a cell only if the cell is this far from the surface where the ray ends [m]; "
-                     "default: 0.35, "
-                     "or 17.5 cells if less"),
-      command.number("--link", constants.link, 0.0, kFarthest,
-                     "maximum distance of neighbouring cells of an object [m]; default: 0.2, or 10 cells if less"),
-      command.number("--reach", constants.reach, 0.0, kFarthest,
-                     "how far an object can reach beyond its freed cells [m]; default: 0.5, or 25 cells if less"),
+                     "default: 0.35, less for cells below 0.015"),
+      command.number(
+          "--link", constants.link, 0.0, kFarthest,
+          "maximum distance of neighbouring cells of an object [m]; default: 0.2, less for cells below 0.015"),
+      command.number(
+          "--reach", constants.reach, 0.0, kFarthest,
+          "how far an object can reach beyond its freed cells [m]; default: 0.5, less for cells below 0.015"),
   };
 }
 

@@ -64,10 +64,10 @@ void print(const char* method, const RemovalScore& score, double seconds, std::s
   std::fflush(stdout);
 }
 
-/// Which lengths the rules for moving objects have at cells below 0.02 m.
+/// Which lengths the rules for moving objects have at cells below 15 mm.
 enum class Lengths {
   OfTheCells,  // the defaults, which shrink with the cells
-  Fixed        // those of cells of 0.02 m and more
+  Fixed        // those of cells of 15 mm and more
 };
 
 template <typename Options>
@@ -215,7 +215,7 @@ void addMovingPoints(CLI::App& app) {
   const auto cells = std::make_shared<std::vector<double>>(std::vector<double>{0.2, 0.1});
   command.add_option("--cells", *cells, "sides of the finest cells [m]")->check(CLI::PositiveNumber);
   const auto fixed = std::make_shared<bool>(false), ours = std::make_shared<bool>(false);
-  command.add_flag("--fixed-lengths", *fixed, "cells below 0.02 m: the lengths of larger cells");
+  command.add_flag("--fixed-lengths", *fixed, "cells below 15 mm: the lengths of larger cells");
   command.add_flag("--without-octomap", *ours, "do not run OctoMap");
   command.callback([folders, free_points, every, cells, fixed, ours] {
     const Lengths lengths = *fixed ? Lengths::Fixed : Lengths::OfTheCells;

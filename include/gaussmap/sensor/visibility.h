@@ -40,14 +40,14 @@ struct GAUSSMAP_API DepthNoise {
 /// Decides when beams pass through a point.
 ///
 /// A length that is std::nullopt has a default. Functions that know the cells of a map use this default for finest
-/// cells of 0.02 m and more. For smaller cells it shrinks with their side: at 0.002 m it is a tenth.
+/// cells of 15 mm and more. For smaller cells it shrinks. At 2 mm and less, it is as many cells as at a side of 0.1 m.
 struct VisibilityOptions {
   /// The ranges of all beams around the point must exceed the range of the point by more than this [m], >= 0.
-  /// std::nullopt: 0.3 m, or 15 cells if that is less.
+  /// std::nullopt: 0.3 m; 3 cells for cells of 2 mm and less.
   std::optional<double> tolerance = std::nullopt;
   /// The point must be at least this far from the surface on which the beams end [m], >= 0. This is needed at grazing
-  /// angles: a beam can end metres behind a point, although both lie on the same road. std::nullopt: 0.35 m, or 17.5
-  /// cells if that is less.
+  /// angles: a beam can end metres behind a point, although both lie on the same road. std::nullopt: 0.35 m; 3.5 cells
+  /// for cells of 2 mm and less.
   std::optional<double> clearance = std::nullopt;
   /// Noise of the sensor, which widens both limits: by three standard deviations of the depth at the point, plus three
   /// at the end of the beam. The two are added, because errors of calibration and pose are systematic. std::nullopt:
@@ -55,7 +55,8 @@ struct VisibilityOptions {
   /// PlanarProjection.
   std::optional<DepthNoise> noise = std::nullopt;
   /// PlanarProjection only: minimum distance of the pixels around the point, at the depth of the point [m], >= 0. It
-  /// allows for the errors of the poses. std::nullopt: 0.03 m, or 1.5 cells if that is less.
+  /// allows for the errors of the poses. std::nullopt: 0.03 m; 0.3 cells for cells of 2 mm
+  /// and less.
   std::optional<double> spacing = std::nullopt;
 };
 

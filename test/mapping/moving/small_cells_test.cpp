@@ -3,6 +3,7 @@
 // forgotten too.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -31,7 +32,7 @@ std::size_t cellsOfBox(const GaussianMap<3>& map) {
   return count;
 }
 
-/// The lengths of cells of 0.02 m and more.
+/// The lengths of cells of 15 mm and more.
 const VisibilityOptions kUsual = {0.3, 0.35};
 
 TEST(SmallCells, OnlineMappingForgetsWhatHasMoved) {
@@ -90,8 +91,8 @@ TEST(SmallCells, FreePointsAreThoseBeforeTheSurfacesOfTheMap) {
   }
 }
 
-TEST(SmallCells, TheDefaultLengthsShrinkBelowCellsOfTwoCentimetres) {
-  for (const double side : {0.02, 0.05, 0.1, 0.2, 1.0}) {
+TEST(SmallCells, TheDefaultLengthsShrinkWithSmallCells) {
+  for (const double side : {0.015, 0.02, 0.05, 0.1, 0.2, 1.0}) {
     const VisibilityOptions sight = forCells(VisibilityOptions(), side);
     EXPECT_EQ(*sight.tolerance, 0.3);
     EXPECT_EQ(*sight.clearance, 0.35);
@@ -103,9 +104,16 @@ TEST(SmallCells, TheDefaultLengthsShrinkBelowCellsOfTwoCentimetres) {
     EXPECT_EQ(*forCells(SharedCellOptions(), side).noise, 0.01);
     EXPECT_EQ(*forCells(SharedCellOptions(), side).extent, 0.05);
   }
-  EXPECT_NEAR(*forCells(VisibilityOptions(), 0.002).tolerance, 15 * 0.002, 1e-15);
-  EXPECT_NEAR(*forCells(MovingCellOptions(), 0.002).reach, 25 * 0.002, 1e-15);
-  EXPECT_NEAR(*forCells(SharedCellOptions(), 0.002).flatness, 2 * 0.002, 1e-15);
+  EXPECT_NEAR(*forCells(VisibilityOptions(), 0.002).tolerance, 3 * 0.002, 1e-15);
+  EXPECT_NEAR(*forCells(MovingCellOptions(), 0.002).reach, 5 * 0.002, 1e-15);
+  EXPECT_NEAR(*forCells(SharedCellOptions(), 0.002).flatness, 0.4 * 0.002, 1e-15);
+  double before = 0.0;
+  for (double side = 1e-4; side < 0.02; side *= 1.01) {  // grows steadily
+    const double now = lengthFactor(side);
+    EXPECT_GT(now, before * (1.0 - 1e-12));
+    EXPECT_LE(now, std::max(before * 1.021, 1e-3)) << side;
+    before = now;
+  }
   VisibilityOptions given;
   given.tolerance = 0.0;
   EXPECT_EQ(*forCells(given, 0.002).tolerance, 0.0);

@@ -48,11 +48,11 @@ struct MovingCellOptions {
   /// The same limit if a scan is from a depth camera, at least min_points. It is a patch of 7 x 7 pixels: three
   /// standard deviations of the lateral noise to each side, about 1 pixel each (Nguyen 2012).
   double min_points_of_camera = 50.0;
-  /// Cells up to this far apart are connected [m]; adjacent cells always are. std::nullopt: 0.2 m, or 10 cells if that
-  /// is less.
+  /// Cells up to this far apart are connected [m]; adjacent cells always are. std::nullopt: 0.2 m; 2 cells for cells of
+  /// 2 mm and less.
   std::optional<double> link = std::nullopt;
-  /// Maximum distance that an object extends beyond its freed cells [m]. std::nullopt: 0.5 m, or 25 cells if that is
-  /// less.
+  /// Maximum distance that an object extends beyond its freed cells [m]. std::nullopt: 0.5 m; 5 cells for cells of 2 mm
+  /// and less.
   std::optional<double> reach = std::nullopt;
 };
 
@@ -60,16 +60,17 @@ struct MovingCellOptions {
 /// object was in the cell define the surface of the floor or wall. Lengths that are std::nullopt have the default that
 /// stands with them, see VisibilityOptions.
 struct SharedCellOptions {
-  /// Cells within this distance can contribute points to the surface [m]. std::nullopt: 0.6 m, or 30 cells if that is
-  /// less.
+  /// Cells within this distance can contribute points to the surface [m]. std::nullopt: 0.6 m; 6 cells for cells of 2
+  /// mm and less.
   std::optional<double> reach = std::nullopt;
-  /// Maximum standard deviation of the points across a surface [m]. std::nullopt: 0.04 m, or 2 cells if that is less.
+  /// Maximum standard deviation of the points across a surface [m]. std::nullopt: 0.04 m; 0.4 cells for cells of 2 mm
+  /// and less.
   std::optional<double> flatness = std::nullopt;
   /// Maximum distance from the surface of a point that belongs to it [m]. Three standard deviations across the surface
-  /// are used instead if they are larger. std::nullopt: 0.01 m, or 0.5 cells if that is less.
+  /// are used instead if they are larger. std::nullopt: 0.01 m; 0.1 cells for cells of 2 mm and less.
   std::optional<double> noise = std::nullopt;
-  /// Minimum standard deviation of the points along the second axis of a surface [m]. std::nullopt: 0.05 m, or 2.5
-  /// cells if that is less.
+  /// Minimum standard deviation of the points along the second axis of a surface [m]. std::nullopt: 0.05 m; 0.5 cells
+  /// for cells of 2 mm and less.
   std::optional<double> extent = std::nullopt;
 };
 
@@ -166,7 +167,7 @@ struct FreePointOptions {
 ///   the leaves that are not free are drawn into a range image with pixels of 1 degree, as seen from `sensor` (see
 ///   visibilityOf()). The map has usually seen these surfaces through the place, if its sensors were near `sensor`.
 /// - It is also free if a chain of at most four adjacent cubes connects it to a free place. The side of a
-///   cube is 0.2 m, or ten finest cells of the map if that is less. Each cube of the
+///   cube is MovingCellOptions::link. Each cube of the
 ///   chain must hold a free point or a point without a cell. This rule finds the edges and the feet of an object.
 ///
 /// So a static object that the map has not seen gets false, unless it stands in front of a surface of the map. Throws
