@@ -99,7 +99,8 @@ void addOptions(Command& command, Pcd2mapOptions& options) {
   command.json(options.json);
   command.files({"--output", "--update"}, {".gmap"});
   command.excludes("--update", {"--output", "--force", "--resolution", "--scales", "--ratio", "--noise", "--online",
-                                "--max-gaussians", "--max-bytes", "--max-error", "--method", "--max-memory"});
+                                "--max-gaussians", "--max-bytes", "--max-error", "--method", "--max-memory", "--queue",
+                                "--max-swaps", "--seed-rule", "--only-occupied", "--learning-factor"});
 }
 
 }  // namespace

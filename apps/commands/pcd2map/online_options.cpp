@@ -54,6 +54,8 @@ void checkOnline(const OnlineInput& input, const BudgetInput& budget, const Outp
     throw UsageError("--online: supports only --budget; use gaussmap refine afterwards for another limit");
   if (budget.cost) throw UsageError("--cost: not with --online");
   if (budget.refine.seed != RefineOptions().seed) throw UsageError("--seed: not with --online");
+  if (const std::string option = insertOption(budget); !option.empty())
+    throw UsageError(option + ": not with --online");
   checkOutputs({input.stats, input.removed}, map.force, inputs, {map.path});
   refuseOtherKinds(input.stats, "a table", {".csv", ".txt"});
   refuseOtherKinds(input.removed, "a PCD file", {".pcd"});
