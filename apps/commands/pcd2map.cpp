@@ -110,9 +110,9 @@ void addOptions(Command& command, Pcd2mapOptions& options) {
   command.threads(options.budget.refine.threads).rare();
   command.json(options.json);
   command.files({"--output", "--update"}, {".gmap"});
-  command.excludes("--update",
-                   {"--output", "--force", "--resolution", "--scales", "--ratio", "--noise", "--online",
-                    "--max-gaussians", "--max-bytes", "--max-error", "--method", "--distance", "--max-memory"});
+  command.excludes("--update", {"--output", "--force", "--resolution", "--scales", "--ratio", "--noise", "--online",
+                                "--max-gaussians", "--max-bytes", "--max-error", "--method", "--max-memory", "--queue",
+                                "--max-swaps", "--seed-rule", "--only-occupied", "--learning-factor", "--distance"});
 }
 
 }  // namespace

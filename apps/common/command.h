@@ -53,7 +53,8 @@ class Command {
 
   Option flag(const std::string& name, bool& value, const std::string& help);
   /// A flag that sets other defaults: `apply` writes them into the variables of the options. An option overrides them
-  /// if it is given and was added after this one. So add the flag before them, and after the options that `apply` reads.
+  /// if it is given and was added after this one. So add the flag before them, and after the options that `apply`
+  /// reads.
   Option preset(const std::string& name, const std::function<void()>& apply, const std::string& help);
   Option text(const std::string& name, std::string& value, const std::string& help);
   Option texts(const std::string& name, std::vector<std::string>& values, const std::string& help);

@@ -26,6 +26,19 @@ std::string escaped(const std::string& text) {
   return markdown;
 }
 
+/// Returns an escaped text for the cell of a table, which must be one line.
+std::string textCell(const std::string& text) {
+  std::string line;
+  for (const char c : text) {
+    const bool is_blank = c == '\n' || c == ' ';
+    if (!is_blank)
+      line += c;
+    else if (!line.empty() && line.back() != ' ')
+      line += ' ';
+  }
+  return escaped(line);
+}
+
 /// Returns code for the cell of a table, where a bar would end the cell.
 std::string codeCell(const std::string& text) {
   return text.empty() ? "" : code(replaced(text, "|", "\\|"));
@@ -38,7 +51,7 @@ std::string block(const std::string& text) {
 std::string optionTable(const OptionGroup& group) {
   std::string text = "| " + escaped(group.title) + " | Meaning | Default |\n|---|---|---|\n";
   for (const OptionEntry& option : group.options) {
-    text += "| " + codeCell(optionText(option)) + " | " + escaped(option.description);
+    text += "| " + codeCell(optionText(option)) + " | " + textCell(option.description);
     if (option.is_required) text += " (required)";
     text += " | " + codeCell(option.default_value) + " |\n";
   }
@@ -49,7 +62,7 @@ std::string positionalTable(const CommandEntry& command) {
   if (command.positionals.empty()) return "";
   std::string text = "| Argument | Meaning | Default |\n|---|---|---|\n";
   for (const OptionEntry& option : command.positionals)
-    text += "| " + codeCell(optionText(option)) + " | " + escaped(option.description) + " | " +
+    text += "| " + codeCell(optionText(option)) + " | " + textCell(option.description) + " | " +
             codeCell(option.default_value) + " |\n";
   return text + "\n";
 }

@@ -32,8 +32,8 @@ std::vector<double> coarserAreas(const MapScale<D>& finer, const std::vector<dou
 }
 
 /// Returns the number of occupied finest cells per Gaussian of scale s >= 1. A leaf of a compressed map has no finer
-/// cells. It counts as a surface straight through the cell, and its Gaussians get equal shares of it. A Gaussian without
-/// children in another cell counts as one finest cell.
+/// cells. It counts as a surface straight through the cell, and its Gaussians get equal shares of it. A Gaussian
+/// without children in another cell counts as one finest cell.
 template <int D>
 std::vector<double> areasOf(const MapScale<D>& scale, const Grid<D>& grid, int s, const MapScale<D>& finer,
                             const std::vector<double>& finer_areas) {

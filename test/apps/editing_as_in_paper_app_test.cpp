@@ -152,7 +152,8 @@ TEST_F(EditingAsInPaper, Pcd2mapTakesTheSettingsOfTheInsertion) {
 
 TEST_F(EditingAsInPaper, HausdorffSamplesTheCellsAsPrinted) {
   const auto errors = [&](const Words& more) {
-    return Json::parse(succeed(joined({"hausdorff", room(), world("pcd"), "--scale", "1", "--samples", "500", "--json"}, more)))["scales"];
+    return Json::parse(succeed(
+        joined({"hausdorff", room(), world("pcd"), "--scale", "1", "--samples", "500", "--json"}, more)))["scales"];
   };
   const Json paper = errors({"--as-in-paper"});
   EXPECT_EQ(paper, errors({"--samples-in", "cell", "--at-least", "0"}));
@@ -177,7 +178,11 @@ TEST_F(EditingAsInPaper, SaysWhatDoesNotFit) {
                               {"--learning-factor"}})
     expectUsageError(option.front() + ": only for --method insert",
                      joined({"refine", map, "-o", own("x.gmap")}, option));
-  expectUsageError("supports only --budget", {"refine", map, "-o", own("x.gmap"), "--as-in-paper", "--max-error", "0.1"});
+  expectUsageError("--queue: not with --online",
+                   planar({world("pcd"), "-o", own("x.gmap"), "--online", "--method", "insert", "--queue", "4"}));
+  expectUsageError("--queue", {"pcd2map", world("pcd"), "--update", map, "--queue", "4"});
+  expectUsageError("supports only --budget",
+                   {"refine", map, "-o", own("x.gmap"), "--as-in-paper", "--max-error", "0.1"});
   expectUsageError("one of --budget", {"simplify", map, "-o", own("x.gmap"), "--as-in-paper"});
   succeed({"compress", left, "-o", own("small.gmap"), "--max-cell-error", "1e6"});
   expectDataError("--method clusters", {"merge", own("small.gmap"), map, "-o", own("x.gmap")});

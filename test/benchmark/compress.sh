@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Compressed maps of the simulated avenue: the size of the file, the Gaussians of the leaves per scale, and how far
 # samples of the whole map lie from the true surface. Prints a table in Markdown.
-# Usage: test/benchmark/compress.sh GAUSSMAP
+# Usage: test/benchmark/compress.sh GAUSSMAP [as-in-paper]    as-in-paper: with limits of the cell error, eq. (6)
 set -euo pipefail
-(($# == 1)) || { sed -n '5p' "$0" | cut -c3- >&2; exit 2; }
+[[ $# == 1 || ($# == 2 && $2 == as-in-paper) ]] || { sed -n '5p' "$0" | cut -c3- >&2; exit 2; }
 gaussmap=$1
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -24,10 +24,13 @@ print(f"| {name} | {info['bytes'] / 1e6:.1f} MB | {' / '.join(map(str, leaves))}
       f" {to_truth['q95']:.2g} m | {to_truth['mean']:.2g} m |")
 PY
 }
-echo "| \`--max-error\` | file | Gaussians of the leaves: 0.1 / 1 / 10 m cells | 95 % | mean |"
+if (($# == 2)); then limit=--max-cell-error limits=(300 1000 3000 10000) how=(--as-in-paper); else
+  limit=--max-error limits=(0.1 0.15 0.5 1) how=()
+fi
+echo "| \`$limit\` | file | Gaussians of the leaves: 0.1 / 1 / 10 m cells | 95 % | mean |"
 echo "|---|---|---|---|---|"
 row "not compressed" "$work/whole.gmap"
-for error in 0.1 0.15 0.5 1; do
-  "$gaussmap" compress "$work/whole.gmap" -o "$work/small.gmap" --max-error $error --force >/dev/null
-  row $error "$work/small.gmap"
+for error in "${limits[@]}"; do
+  "$gaussmap" compress "$work/whole.gmap" -o "$work/small.gmap" "${how[@]}" $limit "$error" --force >/dev/null
+  row "$error" "$work/small.gmap"
 done

@@ -84,6 +84,8 @@ void checkOnline(const OnlineInput& input, const BudgetInput& budget, double res
   if (budget.cost) throw UsageError("--cost: not with --online");
   if (budget.distance) throw UsageError("--distance: not with --online");
   if (budget.refine.seed != RefineOptions().seed) throw UsageError("--seed: not with --online");
+  if (const std::string option = insertOption(budget); !option.empty())
+    throw UsageError(option + ": not with --online");
   checkOutputs({input.stats, input.removed}, map.force, inputs, {map.path});
   refuseOtherKinds(input.stats, "a table", {".csv", ".txt"});
   refuseOtherKinds(input.removed, "a PCD file", {".pcd"});

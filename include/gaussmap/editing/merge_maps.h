@@ -50,10 +50,10 @@ struct GAUSSMAP_API MergeMapsOptions {
 /// run of KLKMeans. The run can drop clusters.
 ///
 /// Links: With MergeMethod::FinerScales, every cluster is the exact moment match of its children. With
-/// MergeMethod::Clusters, every cluster is the exact moment match of the old clusters that it unites, and their children
-/// become its children. A union of finer clusters, or a finest cell of both maps, can have old parents in two unions. It
-/// is linked to the one with the larger part of its weight. The other one keeps its Gaussian, but can have fewer children
-/// or none.
+/// MergeMethod::Clusters, every cluster is the exact moment match of the old clusters that it unites, and their
+/// children become its children. A union of finer clusters, or a finest cell of both maps, can have old parents in two
+/// unions. It is linked to the one with the larger part of its weight. The other one keeps its Gaussian, but can have
+/// fewer children or none.
 ///
 /// docs/notes/merging.md compares both methods by two halves of a drive. MergeMapsOptions::yguel2009() is less accurate
 /// than the default, which is about as accurate as a map of all points.
