@@ -56,10 +56,12 @@ std::vector<double> marksOf(const ColourScale& scale) {
     return marks;
   }
   const bool only_decades = scale.high / scale.low > 50.0;
-  for (double decade = std::pow(10.0, std::floor(std::log10(scale.low))); decade <= scale.high; decade *= 10.0)
-    for (const double step : {1.0, 2.0, 5.0})
-      if ((step == 1.0 || !only_decades) && step * decade >= scale.low && step * decade <= scale.high)
-        marks.push_back(step * decade);
+  const auto powerOf = [](double value) { return static_cast<int>(std::floor(std::log10(value))); };
+  for (int power = powerOf(scale.low); power <= powerOf(scale.high); ++power)
+    for (const double step : {1.0, 2.0, 5.0}) {
+      const double mark = step * std::pow(10.0, power);
+      if ((step == 1.0 || !only_decades) && mark >= scale.low && mark <= scale.high) marks.push_back(mark);
+    }
   return marks;
 }
 
@@ -97,14 +99,13 @@ void ColourScale::draw(Svg& svg, double right, double top, double opacity) const
   }
 }
 
-ColourScale colourScale(const std::string& title, std::vector<double> values, bool is_logarithmic) {
+ColourScale colourScale(const std::string& title, const std::vector<double>& values, bool is_logarithmic) {
   ColourScale scale;
   scale.title = title;
   scale.is_logarithmic = is_logarithmic;
   const auto isFinite = [](double value) { return std::isfinite(value); };
   if (std::none_of(values.begin(), values.end(), isFinite)) return scale;
-  std::tie(scale.low, scale.high) =
-      is_logarithmic ? detail::logColourRange(std::move(values)) : detail::colourRange(std::move(values));
+  std::tie(scale.low, scale.high) = is_logarithmic ? detail::logColourRange(values) : detail::colourRange(values);
   if (scale.high - scale.low < kLeastSpan && !is_logarithmic)
     std::tie(scale.low, scale.high) = std::make_pair(scale.low - 0.5, scale.high + 0.5);
   return scale;

@@ -25,6 +25,6 @@ struct ColourScale {
 
 /// Returns a scale for these values. Its ends are their 1 % and 99 % quantiles, so that a few outliers do not use up
 /// the colours. A logarithmic scale covers the positive values, at most a factor of 10,000 below its upper end.
-ColourScale colourScale(const std::string& title, std::vector<double> values, bool is_logarithmic);
+ColourScale colourScale(const std::string& title, const std::vector<double>& values, bool is_logarithmic);
 
 }  // namespace gaussmap::app

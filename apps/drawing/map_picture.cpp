@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "drawing/colour_scale.h"
 #include "drawing/plan_view.h"
@@ -26,7 +25,7 @@ ColourScale colourScaleOf(const std::vector<Panel>& panels, const BarOptions& ba
     for (const Square& square : panel.squares)
       if (square.value) values.push_back(*square.value);
   }
-  return colourScale(bar.title, std::move(values), bar.is_logarithmic);
+  return colourScale(bar.title, values, bar.is_logarithmic);
 }
 
 /// Sizes and positions in the picture [pixels].

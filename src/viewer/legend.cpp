@@ -54,13 +54,15 @@ namespace {
 /// Returns round numbers in a range of positive values: powers of ten or, if there are less than two, also 2 and 5
 /// times these powers.
 vtkSmartPointer<vtkDoubleArray> roundFactors(double low, double high) {
+  const auto powerOf = [](double value) { return static_cast<int>(std::floor(std::log10(value))); };
   const auto labels = vtkSmartPointer<vtkDoubleArray>::New();
   for (const bool with_steps : {false, true}) {
     labels->Reset();
-    for (double decade = std::pow(10.0, std::floor(std::log10(low))); decade <= high; decade *= 10.0)
-      for (const double step : {1.0, 2.0, 5.0})
-        if ((with_steps || step == 1.0) && step * decade >= low && step * decade <= high)
-          labels->InsertNextValue(step * decade);
+    for (int power = powerOf(low); power <= powerOf(high); ++power)
+      for (const double step : {1.0, 2.0, 5.0}) {
+        const double label = step * std::pow(10.0, power);
+        if ((with_steps || step == 1.0) && label >= low && label <= high) labels->InsertNextValue(label);
+      }
     if (labels->GetNumberOfValues() >= 2) break;
   }
   return labels;
