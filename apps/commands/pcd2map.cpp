@@ -80,6 +80,7 @@ void applyPaper(Pcd2mapOptions& options) {
   options.online.as_in_paper = true;
   options.map = options.online.options.map;
   options.budget.method = "insert";
+  options.budget.refine.seed_rule = options.online.options.seed_rule;
 }
 
 void addOptions(Command& command, Pcd2mapOptions& options) {

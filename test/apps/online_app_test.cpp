@@ -205,6 +205,9 @@ TEST_F(OnlineApp, WorksAsInThePaperOnSimulatedDrives) {
              "--as-in-paper", "--threads", threads});
   }
   EXPECT_EQ(contentsOf(own("street1.gmap")), contentsOf(own("street2.gmap")));
+  succeed({"pcd2map", own("street") + "/scans", "-o", own("parent.gmap"), "--online", "--as-in-paper", "--seed-rule",
+           "parent"});
+  EXPECT_FALSE(sameMap(load(own("street1.gmap")), load(own("parent.gmap"))));
   EXPECT_EQ(contentsOf(own("plan1.gmap")), contentsOf(own("plan2.gmap")));
   const Json street = infoOf(own("street1.gmap")), plan = infoOf(own("plan1.gmap"));
   EXPECT_EQ(street["resolution"], 0.1);

@@ -82,9 +82,10 @@ void checkOnline(const OnlineInput& input, const BudgetInput& budget, double res
   if (!budget.max_gaussians.empty() || !budget.max_bytes.empty() || budget.max_error > 0.0)
     throw UsageError("--online: supports only --budget; use gaussmap refine afterwards for another limit");
   if (budget.cost) throw UsageError("--cost: not with --online");
-  if (budget.distance) throw UsageError("--distance: not with --online");
   if (budget.refine.seed != RefineOptions().seed) throw UsageError("--seed: not with --online");
-  if (const std::string option = insertOption(budget); !option.empty())
+  BudgetInput others = budget;
+  others.refine.seed_rule = RefineOptions().seed_rule;  // the only one of these options that a refinement on line has
+  if (const std::string option = insertOption(others); !option.empty())
     throw UsageError(option + ": not with --online");
   checkOutputs({input.stats, input.removed}, map.force, inputs, {map.path});
   refuseOtherKinds(input.stats, "a table", {".csv", ".txt"});
@@ -102,6 +103,7 @@ OnlineOptions onlineOptions(const OnlineInput& input, const MapOptions& map, con
   options.threads = budget.refine.threads;
   options.budget = budget.budget;
   options.method = budget.method == "insert" ? RefineMethod::Insert : RefineMethod::Agglomerate;
+  options.seed_rule = budget.refine.seed_rule;
   options.forget = !input.keep;
   return options;
 }
