@@ -2,15 +2,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Measures everything and rewrites the tables of README.md, docs/*.md and test/benchmark/RESULTS.md: see readme_table.py.
 # Needs python3, and pcl-tools for the whole commands. What was measured stays in BUILD/figures.
-# Usage: test/benchmark/results.sh BUILD DATA [speed | accuracy | large | tables]
+# Usage: test/benchmark/results.sh BUILD DATA [speed | accuracy | papers | large | tables]
 #   BUILD     configured with -DGAUSSMAP_BUILD_BENCHMARKS=ON; DATA: a folder with the data sets
 #   speed     only the times beside peers
 #   accuracy  only distances: refinement, real scans, compressed, merged and simplified maps, filters
+#   papers    only docs/reproduction.md
 #   large     only the map larger than memory (60 M points, 2 GB)
 #   tables    measures nothing: writes the tables of what BUILD/figures has
 set -euo pipefail
 what=${3:-all}
-{ (($# == 2 || $# == 3)) && [[ $what =~ ^(all|speed|accuracy|large|tables)$ ]]; } || { sed -n '5,10p' "$0" | cut -c3- >&2; exit 2; }
+{ (($# == 2 || $# == 3)) && [[ $what =~ ^(all|speed|accuracy|papers|large|tables)$ ]]; } || { sed -n '5,11p' "$0" | cut -c3- >&2; exit 2; }
 build=$1 data=$2
 here=$(dirname "$0")
 gaussmap=$build/apps/gaussmap benchmark=$build/test/benchmark/gaussmap_benchmark figures=$build/figures
@@ -35,6 +36,9 @@ if part accuracy; then
   "$here/merge.sh" "$gaussmap" simplify "$data/kitti_6scans" "$data/kitti_6scans" | sed -n '/^95 %/,$p' |
     as_text >"$figures/simplify.md"
   "$here/datasets.sh" "$gaussmap" "$benchmark" "$data" >"$figures/datasets.md"
+fi
+if part papers; then
+  "$benchmark" papers --data "$data" --output "$here/../../docs/reproduction.md"
 fi
 if part large; then
   "$here/tiles.sh" "$build" | as_text >"$figures/tiles.md"
