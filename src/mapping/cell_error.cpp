@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mapping/cell_error.h"
 
-#include <algorithm>
-#include <limits>
 #include <stdexcept>
 #include <string>
 
-#include "clustering/small_cholesky.h"
+#include "mapping/contribution.h"
 
 namespace gaussmap::detail {
 
@@ -19,17 +17,8 @@ double cellError(const std::vector<Gaussian<D>>& centres, const std::vector<Gaus
   if (data.empty()) return 0.0;
   if (centres.empty()) throw std::invalid_argument("cellError: no clusters to represent the finer Gaussians");
   double sum = 0.0;
-  for (std::size_t j = 0; j < data.size(); ++j) {
-    const Gaussian<D>& z = data[j];
-    const SmallCholesky<D> factor(z.cov);
-    if (!factor.positive) throw std::domain_error("cellError: a finer covariance is not positive definite");
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const Gaussian<D>& w : centres) {
-      const Vector<D> difference = w.mean - z.mean;
-      nearest = std::min(nearest, (factor.whitening * difference).squaredNorm());
-    }
-    sum += factors.empty() ? nearest : factors[j] * nearest;
-  }
+  for (std::size_t j = 0; j < data.size(); ++j)
+    sum += (factors.empty() ? 1.0 : factors[j]) * contributionOf(data[j], centres);
   return sum / static_cast<double>(data.size());  // eq. (6)
 }
 

@@ -11,6 +11,7 @@
 #include "gaussmap/map/moment_grid.h"
 #include "gaussmap/mapping/online/online_mapper.h"
 #include "gaussmap/sensor/range_image.h"
+#include "mapping/learning_rate.h"
 #include "mapping/online/online_cells.h"
 #include "sensor/culling.h"
 
@@ -127,8 +128,7 @@ void recluster(OnlineCells<D>& cells, std::uint32_t i, int scale, const std::vec
 
 /// Returns the learning rate eps(o), Yguel 2009 eq. (5).
 inline double rateOf(double log_odds, const OnlineOptions& options) {
-  const double most = options.occupancy.max_log_odds;
-  return (options.slowest_rate - options.fastest_rate) / (2.0 * most) * (log_odds + most) + options.fastest_rate;
+  return LearningRates{options.slowest_rate, options.fastest_rate, options.occupancy.max_log_odds}.at(log_odds);
 }
 
 /// Counts a hit of a cluster by a scan, at most once per scan, and raises its log-odds.
