@@ -11,13 +11,12 @@ using namespace detail;
 
 namespace {
 
-constexpr double kSpacing = 0.02;  // distance of the points on the truth [m]: a fifth of a finest cell
 constexpr double kObserved = 0.5;  // a surface counts as observed up to this distance from a ray's end [m]
 
 /// Returns points of the surface near the ends of rays. The ends themselves are no reference: far from the sensor they
 /// are metres apart, so a map that fills the surface between them correctly would seem wrong.
-std::vector<Vector<3>> observedSurface(const TriangleMesh& mesh, const std::vector<Vector<3>>& hits) {
-  const auto count = static_cast<std::size_t>(surfaceArea(mesh) / (kSpacing * kSpacing));
+std::vector<Vector<3>> observedSurface(const TriangleMesh& mesh, const std::vector<Vector<3>>& hits, double spacing) {
+  const auto count = static_cast<std::size_t>(surfaceArea(mesh) / (spacing * spacing));
   const std::vector<Vector<3>> all = sampleSurface(mesh, count);
   const std::vector<double> distances = nearestDistances(all, hits);
   std::vector<Vector<3>> observed;
@@ -26,14 +25,14 @@ std::vector<Vector<3>> observedSurface(const TriangleMesh& mesh, const std::vect
   return observed;
 }
 
-DataSet street(const std::string& name, const std::function<Simulation()>& make) {
-  const auto load = [make](std::uint64_t seed) {
+DataSet street(const std::string& name, double spacing, const std::function<Simulation()>& make) {
+  const auto load = [make, spacing](std::uint64_t seed) {
     const Simulation simulation = make();
     LoadedData data = simulatedDrive(simulation, seed);
-    data.truth = observedSurface(data.mesh, data.hits);
+    data.truth = observedSurface(data.mesh, data.hits, spacing);
     return data;
   };
-  return {name, "points on the observed surface, 2 cm apart", {0.1, 10, 3}, {3.4, 4.0}, true, load};
+  return {name, "points on the observed surface", {0.1, 10, 3}, {3.4, 4.0}, true, load};
 }
 
 DataSet scan(const std::string& name, const std::filesystem::path& path, const MapOptions& options,
@@ -64,12 +63,12 @@ LoadedData simulatedDrive(const Simulation& simulation, std::uint64_t seed) {
   return data;
 }
 
-std::vector<DataSet> dataSets(const std::filesystem::path& data, int scans) {
+std::vector<DataSet> dataSets(const std::filesystem::path& data, int scans, double spacing) {
   SimulationOptions options;
   options.scans = scans;
   std::vector<DataSet> sets = {
-      street("simulated street", [options] { return makeSimulation(WorldName::Street, options); }),
-      street("simulated avenue", [options] { return makeSimulation(WorldName::Avenue, options); })};
+      street("simulated street", spacing, [options] { return makeSimulation(WorldName::Street, options); }),
+      street("simulated avenue", spacing, [options] { return makeSimulation(WorldName::Avenue, options); })};
   if (data.empty()) return sets;
   sets.push_back(scan("KITTI, one scan", data / "kitti_6scans/000000.pcd", {0.1, 10, 3}, 2.5, 25.0));
   sets.push_back(scan("RGB-D office", data / "rgbd_office_single/office1.pcd", {0.02, 10, 3}));

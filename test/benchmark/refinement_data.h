@@ -12,6 +12,9 @@
 
 namespace gaussmap::refinement {
 
+/// Distance of the points on a true surface [m]: a fifth of a finest cell.
+inline constexpr double kTruthSpacing = 0.02;
+
 struct LoadedData {
   std::vector<Vector<3>> points;  // points of the map [m]
   std::vector<Vector<3>> truth;   // the reference for samples of the map [m]
@@ -32,7 +35,7 @@ struct DataSet {
 LoadedData simulatedDrive(const Simulation& simulation, std::uint64_t seed);
 
 /// Returns the simulated street and avenue with `scans` scans each (0: all their scans). If `data` names a folder, also
-/// returns one outdoor scan, one RGB-D image and one building.
-std::vector<DataSet> dataSets(const std::filesystem::path& data, int scans);
+/// returns one outdoor scan, one RGB-D image and one building. `spacing`: of the points on the simulated surface [m].
+std::vector<DataSet> dataSets(const std::filesystem::path& data, int scans, double spacing = kTruthSpacing);
 
 }  // namespace gaussmap::refinement

@@ -124,10 +124,11 @@ std::vector<Ratio> ratiosOf(Table& table) {
 struct Options {
   std::string data, json;
   int seeds = 3, scans = 0;
+  double spacing = kTruthSpacing;
 };
 
 void run(const Options& options) {
-  const std::vector<DataSet> sets = dataSets(options.data, options.scans);
+  const std::vector<DataSet> sets = dataSets(options.data, options.scans, options.spacing);
   std::vector<Table> tables;
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const DataSet& set : sets) {
@@ -157,6 +158,9 @@ void addRefinementTable(CLI::App& app) {
       ->check(CLI::ExistingDirectory);
   command.add_option("--seeds", options->seeds, "of every figure")->check(CLI::Range(1, 1000))->capture_default_str();
   command.add_option("--scans", options->scans, "of the streets; 0: as many as they have")->check(CLI::Range(0, 1000));
+  command.add_option("--spacing", options->spacing, "of the points on the simulated surfaces [m]")
+      ->check(CLI::Range(0.01, 1.0))
+      ->capture_default_str();
   command.add_option("--json", options->json, "file to write all figures of all seeds to");
   command.callback([options] { refinement::run(*options); });
 }
