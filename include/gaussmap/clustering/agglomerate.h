@@ -20,10 +20,10 @@ enum class MergeCost {
   /// of the log-likelihood that the merge loses (Runnalls 2007). With this cost, the moment match is weighted by
   /// the weights of the Gaussians. With Volume, it is weighted by the areas given to agglomerate().
   Runnalls,
-  /// `min(KL(g_1 || g_2), KL(g_2 || g_1))` [nat], eq. (8), as in the paper, sec. 5.4. The divergence is not symmetric.
-  /// The paper takes the smallest one of all ordered pairs (Algorithm 2, line 14), so the smaller one of both
-  /// directions
-  /// counts. The moment match is weighted by the weights of the Gaussians.
+  /// `min(KL(g_1 || g_2), KL(g_2 || g_1))` [nat], eq. (8), as in the paper, sec. 5.4. g_1 and g_2 are the two clusters.
+  /// The divergence is not symmetric. The paper takes the minimum over all ordered pairs (Algorithm 2, line 14), so the
+  /// cost of a pair is the smaller one of the two directions. The moment match is weighted by the weights of the
+  /// Gaussians.
   KL
 };
 

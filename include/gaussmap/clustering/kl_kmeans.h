@@ -12,7 +12,7 @@ namespace gaussmap {
 /// How a new cluster centre is made, Yguel 2009, Algorithm 2, lines 5, 18 and 21. The centre is placed at the Gaussian
 /// of largest distortion: the one with the largest distance from the centre of its cluster.
 enum class ClusterSeed {
-  /// The centre has the mean of this Gaussian and the covariance of the cluster that contained it. Neighbours of the
+  /// The centre has the mean of this Gaussian and the covariance of the cluster that contains it. Neighbours of the
   /// Gaussian can then join the new cluster.
   ParentCovariance,
   /// The centre is a copy of this Gaussian, as in the paper. Its small covariance keeps all other Gaussians out of the
@@ -28,7 +28,7 @@ struct KLKMeansOptions {
   int max_swaps = 20;       ///< maximum rounds of the swap loop of Algorithm 2, >= 0 (0 = plain k-means)
   ClusterSeed seed_rule = ClusterSeed::ParentCovariance;  ///< the new centre in the swap loop and in insertCluster()
   GaussianDistance distance = GaussianDistance::KL;       ///< from a Gaussian to a cluster centre; see KLKMeans
-  std::uint64_t seed = 0;                                 ///< same input + same seed = same result
+  std::uint64_t seed = 0;                                 ///< same input + same seed = bit-identical result
 };
 
 /// The result of k-means: a partition of n Gaussians.
@@ -45,16 +45,16 @@ struct KLClustering {
 
 /// Weighted k-means over Gaussians, Yguel 2009 sec. 5.2.1 (after Davis & Dhillon 2006).
 ///
-/// Each input Gaussian joins the nearest cluster centre. KLKMeansOptions::distance is the distance d_ZxF of Algorithm
-/// 2, from a Gaussian to a centre. By default, it is the KL divergence, eq. (8). Ties go to the smaller label. Each
+/// Each input Gaussian joins the nearest cluster centre. KLKMeansOptions::distance selects the distance from a Gaussian
+/// to a centre, d_ZxF of Algorithm 2. The paper uses the KL divergence, eq. (8). Ties go to the smaller label. Each
 /// centre then becomes the moment match of its members, eqs. (9), (10). The run ends when the labels stay the same or
 /// the distortion, eq. (7), falls by less than the tolerance. A centre that loses its last member is dropped. The
 /// algorithm is single-threaded and deterministic.
 ///
-/// The moment match is the centre of least distortion for the KL divergence only. With another distance, the distortion
-/// can rise in an iteration. The run then ends and returns the clusters of the iteration before. So the result never
-/// has a larger distortion than the moment matches of the first assignment. The initial centres of fit() do not depend
-/// on the distance.
+/// Only for the KL divergence, the moment match is the centre of minimum distortion. With another distance, the
+/// distortion can increase in an iteration. The run then ends and returns the clusters of the previous iteration. The
+/// distortion of the result is therefore never larger than that after the first assignment and moment match. The
+/// initial centres of fit() do not depend on the distance.
 ///
 /// Weights must be positive and finite, means finite, and covariances positive definite. The functions throw
 /// std::invalid_argument for a weight or mean and std::domain_error for a covariance; the message gives the index of
@@ -93,8 +93,10 @@ class GAUSSMAP_API KLKMeans {
 /// - `current_centres` are the k - 1 current cluster centres; this defines k. If there are none, the result is one
 ///   cluster.
 /// - The result has at most k clusters. It can have fewer, for example if input Gaussians are equal.
-/// - The distortion never exceeds that of the current centres. With a distance other than KL: never that of the moment
-///   matches of the Gaussians nearest to each current centre. If no new cluster improves them, they are the result.
+/// - KL: the distortion of the result never exceeds that of the current centres.
+/// - Other distances: each Gaussian joins the nearest current centre, and these k - 1 clusters are moment-matched. The
+///   distortion of the result never exceeds that of these clusters. If a new cluster does not reduce it, these clusters
+///   are the result.
 /// - If k >= n, each Gaussian becomes its own cluster, with distortion 0.
 ///
 /// KLKMeansOptions::k is not used. Input and errors are the same as for KLKMeans.

@@ -97,41 +97,41 @@ GAUSSMAP_API double klDivergence(const Gaussian<D>& p, const Gaussian<D>& q);
 
 /// Returns the symmetric KL divergence J [nat] (Jeffreys 1946): `J(p, q) = KL(p || q) + KL(q || p)`.
 ///
-/// It is the sum of both divergences, not their mean, and not a metric.
+/// It is the sum of both divergences, not their mean. It is symmetric, but it is not a metric.
 /// Throws std::domain_error if a covariance is not positive definite.
 template <int D>
 GAUSSMAP_API double symmetricKLDivergence(const Gaussian<D>& p, const Gaussian<D>& q);
 
 /// Returns the Bhattacharyya distance [nat] (Bhattacharyya 1943): the negative logarithm of the overlap of two
-/// densities,
-/// `-ln integral sqrt(p(x) q(x)) dx`.
+/// densities, `-ln integral sqrt(p(x) q(x)) dx`.
 ///
-/// `B(p, q) = (mq-mp)' S^-1 (mq-mp) / 8 + ln(|S| / sqrt(|Sp| |Sq|)) / 2`, with `S = (Sp + Sq) / 2`. It is symmetric and
-/// not a metric. Throws std::domain_error if a covariance is not positive definite.
+/// `B(p, q) = (mq-mp)' S^-1 (mq-mp) / 8 + ln(|S| / sqrt(|Sp| |Sq|)) / 2`, with `S = (Sp + Sq) / 2`. The distance is
+/// symmetric, but it is not a metric. Throws std::domain_error if a covariance is not positive definite.
 template <int D>
 GAUSSMAP_API double bhattacharyyaDistance(const Gaussian<D>& p, const Gaussian<D>& q);
 
-/// Returns the squared 2-Wasserstein distance [m^2] (Olkin and Pukelsheim 1982; Givens and Shortt 1984): the least mean
-/// squared way on which the mass of p moves to become q.
+/// Returns the squared 2-Wasserstein distance [m^2] (Olkin and Pukelsheim 1982; Givens and Shortt 1984): the minimum
+/// mean squared distance over which the mass of p must be moved to turn p into q.
 ///
-/// `W^2(p, q) = |mq-mp|^2 + tr Sp + tr Sq - 2 tr((Sp^1/2 Sq Sp^1/2)^1/2)`. Its square root is a metric. The value has
-/// an accuracy of 1e-15 also for thin Gaussians, because it is evaluated without this difference. Throws
-/// std::domain_error if a covariance is not positive definite.
+/// `W^2(p, q) = |mq-mp|^2 + tr Sp + tr Sq - 2 tr((Sp^1/2 Sq Sp^1/2)^1/2)`. Its square root is a metric. The
+/// function computes the part of the covariances as a sum of squares, not as this difference of traces. The result is
+/// therefore accurate to about 1e-15 also for thin Gaussians. Throws std::domain_error if a covariance is not positive
+/// definite.
 template <int D>
 GAUSSMAP_API double wassersteinSquared(const Gaussian<D>& p, const Gaussian<D>& q);
 
-/// A distance between two Gaussians. All are 0 if the Gaussians are equal. The weights are not used.
+/// A distance between two Gaussians. Every distance is 0 if the Gaussians are equal. The weights are not used.
 enum class GaussianDistance {
   KL,             ///< klDivergence() [nat], Yguel 2009 eq. (8); not symmetric
   SymmetricKL,    ///< symmetricKLDivergence() [nat], Jeffreys 1946
   Bhattacharyya,  ///< bhattacharyyaDistance() [nat], Bhattacharyya 1943
-  /// wassersteinSquared() [m^2], Olkin and Pukelsheim 1982. Only this distance depends on lengths in metres: a scale
-  /// along one axis changes it. All others keep their value under affine maps.
+  /// wassersteinSquared() [m^2], Olkin and Pukelsheim 1982. Only this distance depends on lengths in metres: it changes
+  /// if space is stretched. The other distances keep their values under every invertible affine map.
   Wasserstein,
 };
 
-/// Returns one of these distances, from p to q. Throws like the function of the distance, and std::invalid_argument if
-/// `distance` is not a value of the enumeration.
+/// Returns the selected distance from p to q, in the unit of that distance (see GaussianDistance). Throws like the
+/// function of the distance, and std::invalid_argument if `distance` is not a value of the enumeration.
 template <int D>
 GAUSSMAP_API double gaussianDistance(const Gaussian<D>& p, const Gaussian<D>& q, GaussianDistance distance);
 

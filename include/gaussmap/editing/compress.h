@@ -9,13 +9,12 @@
 
 namespace gaussmap {
 
-/// When compress() takes a coarse cell for good enough.
+/// The criterion by which compress() decides that a coarse cell is good enough.
 enum class CompressBy {
-  /// Distances between the Gaussians of the cell and the finest scale.
+  /// The distances between the Gaussians of the cell and the means of the finest scale.
   Distance,
   /// The error of the cell, Yguel 2009 eq. (6), as in the paper: the mean squared Mahalanobis distance from a Gaussian
-  /// of
-  /// the next finer scale to the nearest cluster.
+  /// of the next finer scale to the nearest cluster.
   CellError,
 };
 
@@ -24,7 +23,7 @@ struct GAUSSMAP_API CompressOptions {
   std::size_t samples = 100;             ///< CompressBy::Distance: number of samples per tested Gaussian, >= 1
   std::uint64_t seed = 1;                ///< CompressBy::Distance: same map + same seed = bit-identical result
   int threads = 0;                       ///< 0 = all cores
-  CompressBy by = CompressBy::Distance;  ///< when a cell is good enough
+  CompressBy by = CompressBy::Distance;  ///< criterion for a cell that is good enough
   /// CompressBy::CellError: multiplies the terms of eq. (6) by 1 - eps, see RefineOptions::learning_factor.
   bool learning_factor = false;
 
@@ -38,9 +37,10 @@ struct GAUSSMAP_API CompressOptions {
 /// this cell is deleted. Otherwise its children are tested. Cells that are kept do not change. If nothing can be
 /// deleted, the map is returned unchanged. In the result, the Gaussians of leaves() represent the whole map.
 ///
-/// CompressBy::CellError: `max_error` has no unit, because eq. (6) is in squared standard deviations of the finer
+/// CompressBy::CellError: `max_error` has no unit: eq. (6) is a squared number of standard deviations of the finer
 /// Gaussians. A cell is good enough if the error of this cell, and the error of every coarse cell below it, is at most
-/// max_error. The paper names no limit. No random numbers are used.
+/// max_error. The paper gives neither a value of the limit nor a rule for the cells below. This criterion uses no
+/// random numbers.
 ///
 /// CompressBy::Distance: `max_error` is in metres. The reference is the means of the finest Gaussians of the given map.
 /// A cell is good enough if both criteria hold:

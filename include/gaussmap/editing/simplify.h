@@ -14,14 +14,18 @@ struct GAUSSMAP_API SimplifyOptions {
   int threads = 0;                           ///< 0 = all cores
   bool smooth = false;  ///< ends with one run of KLKMeans per cell, which starts from the merged clusters
 
-  /// Returns the options of the paper, Yguel 2009 sec. 5.4: MergeCost::KL, and then one run of the clustering.
+  /// Returns the options of the paper, Yguel 2009 sec. 5.4: MergeCost::KL, and then one run of the clustering per cell.
+  ///
+  /// Two things differ from the paper. It fixes the number of clusters per cell; the budgets of simplify() limit the
+  /// number per scale. In a cell with more than AgglomerateOptions::max_exact clusters, only pairs of neighbours are
+  /// compared.
   static SimplifyOptions yguel2009();
 };
 
 /// Reduces the number of Gaussians of a map to a budget, Yguel 2009 sec. 5.4.
 ///
 /// The function merges pairs of clusters of the same cell, until the budget is met. The cheapest merges of the
-/// whole scale come first. The finest scale is simplified too if its cells hold several Gaussians; cells with exact
+/// whole scale are made first. The finest scale is simplified too if its cells hold several Gaussians; cells with exact
 /// moments hold one and do not change. Compressed maps, final maps and maps of one scale are accepted. The children of
 /// merged clusters become children of the union. Coarse clusters thus stay the moment matches of their children. Every
 /// cell keeps at least one Gaussian.

@@ -38,8 +38,9 @@ struct GAUSSMAP_API SampleOptions {
   int threads = 0;                                  ///< 0 = all cores
   SampleBounds bounds = SampleBounds::MemberCells;  ///< where samples may lie
 
-  /// Returns the options of the paper, Yguel 2009 sec. 6: The number of samples is proportional to the volume of the
-  /// ellipsoid, without a minimum, and samples outside the cell of the Gaussian are rejected.
+  /// Returns the options of the paper, Yguel 2009 sec. 6. The number of samples per Gaussian is proportional to the
+  /// volume of its ellipsoid, without a minimum. Samples outside the cell of the Gaussian are rejected. The paper does
+  /// not give the total number of samples; it is the default of `samples`.
   static SampleOptions yguel2009();
 };
 

@@ -81,7 +81,7 @@ struct MaxBytes {
   std::uintmax_t bytes = 0;  ///< maximum size of the result
   /// A function that returns the size of a result [bytes]. It must be set; for example, maxFileBytes() returns the size
   /// of the map file. While refine() searches for the multiple, RefineResult::curves holds placeholders, because
-  /// measuring takes long. Their text is at least as long as that of the final curves.
+  /// measuring takes long. In a map file, their text is at least as long as that of the final curves.
   std::function<std::uintmax_t(const RefineResult<3>&)> size_of;
   /// The same for planar maps. A budget needs only the function for the dimension of the map.
   std::function<std::uintmax_t(const RefineResult<2>&)> planar_size_of = {};
@@ -119,37 +119,45 @@ struct GAUSSMAP_API RefineOptions {
   GaussianDistance distance = GaussianDistance::KL;       ///< from a Gaussian to a cluster, see KLKMeans
   std::uint64_t seed = 0;                                 ///< same map + same seed = bit-identical result
   /// Adds clusters only to cells whose finer Gaussians have a mean probability of occupancy above 0.5, Yguel 2009 sec.
-  /// 5.1. The probability is 1 / (1 + exp(-log-odds)). Has no effect on maps without occupancy.
+  /// 5.1. The probability of a Gaussian is 1 / (1 + exp(-log-odds)). Has no effect on maps without occupancy.
   bool only_occupied = false;
   /// Multiplies the terms of eq. (6) by 1 - eps, as in the paper, where eps is the learning rate of a finer Gaussian,
-  /// eq. (5). The rate follows from its log-odds. Has no effect on maps without occupancy.
+  /// eq. (5). The rate follows from its log-odds, with the constants of the paper: eps_min = 5e-4, eps_max = 5e-2 and
+  /// o_max = 10. Has no effect on maps without occupancy.
   bool learning_factor = false;
   // Both:
   int threads = 0;  ///< 0 = all cores
 
   /// Returns the options of the paper, Yguel 2009.
   ///
-  /// The method is RefineMethod::Insert (sec. 5.2). In each round, the p = 4 cells of largest error, eq. (6), get one
-  /// more cluster. Each new cluster starts as a copy of the Gaussian of largest distortion, with its own covariance
-  /// (Algorithm 2, lines 5, 18 and 21). If the map has occupancy, cells that are probably free get no more clusters
-  /// (sec. 5.1), and eq. (6) has the factor 1 - eps. The default method is RefineMethod::Agglomerate, because it gives
-  /// better maps. If RefineMethod::Insert is selected, three more defaults differ from the paper. More cells are
-  /// refined at a time, which keeps all threads busy. A new cluster starts with the covariance of the cluster that the
-  /// Gaussian of largest distortion belonged to. Occupancy is not used.
+  /// - The method is RefineMethod::Insert (sec. 5.2), with the KL divergence as distance.
+  /// - In each round, the p = 4 cells of largest error, eq. (6), get one more cluster each (sec. 6).
+  /// - A new cluster starts as a copy of the Gaussian of largest distortion (Algorithm 2, lines 5, 18 and 21).
+  /// - If the map has occupancy, cells that are probably free get no more clusters (sec. 5.1), and eq. (6) has the
+  ///   factor 1 - eps.
+  ///
+  /// Some things differ from the paper. It refines a map between scans, and only the cells that the sensor sees;
+  /// OnlineOptions::yguel2009() does this. refine() repeats its rounds on the whole map until the budget is used. The
+  /// paper gives no size of the budget. The swap loop ends after max_swaps rounds, and a run of k-means ends after
+  /// KLKMeansOptions::max_iterations; the paper has no such limits.
+  ///
+  /// The default method is RefineMethod::Agglomerate, because it gives better maps. If only `method` is set to
+  /// RefineMethod::Insert, three more options differ from the paper: `queue` (more cells per round, which keeps all
+  /// threads busy), `seed_rule`, and the use of occupancy (`only_occupied`, `learning_factor`).
   static RefineOptions yguel2009();
 };
 
 /// Gives the coarse scales more Gaussians where one Gaussian per cell represents the finer ones badly.
 ///
-/// The finest scale does not change, and the result depends on this scale only. From fine to coarse, every coarse scale
-/// is rebuilt. It gets the number of Gaussians that the budget allows, but at most one per Gaussian of the finer scale.
-/// The map is moved, not copied: `refine(std::move(map))` needs no memory for a second finest scale.
+/// The finest scale does not change. The result depends on this scale and its log-odds only. From fine to coarse, every
+/// coarse scale is rebuilt. It gets the number of Gaussians that the budget allows, but at most one per Gaussian of the
+/// finer scale. The map is moved, not copied: `refine(std::move(map))` needs no memory for a second finest scale.
 ///
 /// RefineMethod::Agglomerate: agglomerate() makes one dendrogram per cell from the finer Gaussians below the cell. For
-/// this, the square of half the side of a finest cell is added to their variances. Their areas are the numbers of
-/// occupied finest cells that they represent. At first, each cell has one cluster. Then the function undoes the most
-/// expensive merges of all cells of the scale, from the top of the dendrograms, until the budget is used. This method
-/// uses no random numbers.
+/// this, the square of half the side of a finest cell is added to their variances (not for MergeCost::KL). Their areas
+/// are the numbers of occupied finest cells that they represent. At first, each cell has one cluster. Then the function
+/// undoes the most expensive merges of all cells of the scale, from the top of the dendrograms, until the budget is
+/// used. This method uses no random numbers.
 ///
 /// RefineMethod::Insert, Yguel 2009 sec. 5: the p cells of largest error, eq. (6), get one more cluster each (see
 /// insertCluster(), Algorithm 2) and return to the queue with their new error. This repeats until the budget is used.
@@ -174,8 +182,9 @@ GAUSSMAP_API RefineResult<D> refine(GaussianMap<D> map, const Budget& budget = P
 
 /// How badly the Gaussians of a coarse scale represent the finer ones: Yguel 2009, eq. (6) and Fig. 5.
 ///
-/// The values have no unit: they are squared numbers of standard deviations of the finer Gaussians. They easily differ
-/// by a factor of 1000 and more. The factor (1 - eps) of eq. (6) is 1, as in refine().
+/// The values have no unit: they are squared numbers of standard deviations of the finer Gaussians. The values of
+/// two cells can differ by a factor of 1000 and more. The factor 1 - eps of eq. (6) is 1 here, as in refine() without
+/// RefineOptions::learning_factor.
 struct CellErrors {
   /// One value per cell of the scale: the error of the cell, which is the mean contribution of the finer Gaussians
   /// below it. NaN for a cell without finer cells (see GaussianMap::isLeaf()).

@@ -16,8 +16,9 @@ namespace gaussmap {
 /// Clusters a cloud of Gaussians (see toPointCloud()) with KLKMeans.
 ///
 /// Call setInputCloud(), setIndices() to select some points, setNumberOfClusters() and cluster(). Points with a
-/// non-finite mean, covariance or weight are in no cluster. If the input is not valid (no cloud, no clusters, or a
-/// covariance that is not positive definite), cluster() prints an error and returns nothing.
+/// non-finite mean, covariance or weight are in no cluster. If the input is not valid, cluster() prints an error
+/// and gives no clusters: no cloud, a number of clusters below 1, a weight that is not positive, or a covariance that
+/// is not positive definite.
 class GAUSSMAP_API PointCloudKLKMeans : public pcl::PCLBase<PointGaussian> {
  public:
   /// Stores the options. They are checked by cluster().
@@ -25,7 +26,7 @@ class GAUSSMAP_API PointCloudKLKMeans : public pcl::PCLBase<PointGaussian> {
 
   /// Sets the number of clusters.
   void setNumberOfClusters(int clusters) { options_.k = clusters; }
-  /// Sets the distance from a Gaussian to a cluster.
+  /// Sets the distance from a Gaussian to a cluster centre, see KLKMeans.
   void setDistance(GaussianDistance distance) { options_.distance = distance; }
   /// Sets the seed of the random numbers.
   void setSeed(std::uint64_t seed) { options_.seed = seed; }

@@ -27,10 +27,12 @@ enum class EvidencePolicy {
 
 /// Which particles are deleted when a segment has too many.
 enum class ParticleLimit {
-  /// The limit holds for every 0.25 m of the segment. Random particles of a stretch with too many are deleted.
+  /// The limit holds for every stretch of 0.25 m of the segment. If a scan puts too many particles into a stretch,
+  /// random particles of the stretch are deleted.
   Bins,
-  /// The limit holds for the whole segment, as in the paper. Before an observation is added, random particles of the
-  /// segment are deleted to make room for it. Parts that are seldom seen can then lose their particles.
+  /// The limit holds for the whole segment, as in the paper, sec. 4.4. Before an observation is added, random particles
+  /// of the segment are deleted to make room for it. Parts that are seldom seen can thus lose their particles. After a
+  /// merge, a segment can have more particles than the limit, until its next observation.
   Segment
 };
 
@@ -45,17 +47,19 @@ enum class SegmentAssociation {
 
 /// Which segments can be merged with a segment.
 enum class MergeCandidates {
-  /// The linked neighbours, and other segments near it that have about the same direction.
+  /// The linked neighbours, and other segments near the segment that have about the same direction.
   Near,
-  /// Only the linked neighbours, as in the paper, eq. (4).
+  /// Only the linked neighbours, as in the paper, eq. (4). They are candidates only if the linked ends are at most
+  /// `gap` apart and the directions differ by less than 90 degrees.
   Linked
 };
 
 /// Options of EvidencePolicy::ParticleSets.
 struct ParticleOptions {
   int samples = 30;  ///< M, particles per observation, >= 1
-  /// Maximum number of particles per metre of a segment, > 0. With ParticleLimit::Segment, only the first 10
-  /// SegmentFitterOptions::min_length of the length count. A stretch or segment can always have `samples` particles.
+  /// Maximum number of particles per metre of a segment, > 0. With ParticleLimit::Segment, the length counts only up to
+  /// 10 times SegmentFitterOptions::min_length. A stretch of 0.25 m (ParticleLimit::Bins) or a segment
+  /// (ParticleLimit::Segment) can always have at least `samples` particles.
   double per_metre = 300.0;
   ParticleLimit limit = ParticleLimit::Bins;  ///< which particles are deleted
   std::uint64_t seed = 1;                     ///< same scans + same seed = same map
@@ -84,33 +88,42 @@ struct GAUSSMAP_API SegmentFitterOptions {
   /// The utility is a separate parameter. The paper's utility is eq. (4):
   /// `SegmentFitter fitter(SegmentFitterOptions::leal2000(), std::make_shared<ViewpointInvariantUtility>());`
   ///
-  /// The paper does not say everything. Where it says nothing, the preset does the same as the defaults:
+  /// The text of the paper leaves some steps open. For these, the preset does the same as the defaults:
   /// - The polygon of a segment is a rectangle, see min_half_width and growth. Of several segments whose polygons
   ///   contain an observation, the nearest gets it.
-  /// - Neighbouring beams without a segment become one new segment, which the utility can split.
-  /// - A segment is split where the summed squared errors of both parts are smallest. The utility votes on a segment
-  ///   again after each scan that observed it.
-  /// - Segments are linked if neighbouring beams end on them and their ends are less than `gap` apart. If the lines of
-  ///   linked segments meet near these ends, both ends are moved to the intersection.
-  /// - The upper bound of the particles is that of 10 l_min of length.
-  /// - The threshold sigma_th and, for l_min = 1 m, the factor alpha of eq. (4) are those of ViewpointInvariantOptions.
+  /// - The noise of the laser is that of SensorNoise.
+  /// - Neighbouring beams without a segment become one new segment. Before it is made, the utility can split it between
+  ///   two beams; these votes use the ends of the beams, not the particles.
+  /// - A segment is split between two cells (see `cell`), where the sum of the squared errors of both parts is
+  ///   smallest. A cell with n observations counts n / (n + 1) in this sum. The utility votes on a segment again after
+  ///   each scan that observed it. The number of votes per scan is limited.
+  /// - The ends of a segment follow from the spread of the particles in its cells at both ends.
+  /// - Segments are linked if neighbouring beams end on them and their ends are at most `gap` apart. If the lines of
+  ///   linked segments meet near these ends, map() moves both ends to the intersection.
+  /// - The number of particles of a segment has an upper bound: that of a segment of length 10 l_min.
+  ///
+  /// Nor does the paper give sigma_th of eq. (4), or alpha for l_min = 1 m. ViewpointInvariantOptions has values for
+  /// both.
   static SegmentFitterOptions leal2000();
 
   EvidencePolicy policy = EvidencePolicy::MomentCells;  ///< how a segment stores its observations
   ParticleOptions particles;                            ///< options of EvidencePolicy::ParticleSets
   SensorNoise noise;                                    ///< noise of the laser
   double cell = 0.1;                                    ///< length of the cells along a segment [m], > 0
-  double min_length = 1.0;                              ///< l_min, only for ParticleOptions::per_metre [m], > 0
+  /// l_min, used only for the limit of ParticleLimit::Segment [m], > 0. The l_min of the utility is a separate option,
+  /// ViewpointInvariantOptions::min_length.
+  double min_length = 1.0;
   /// Minimum half width of the polygon of a segment [m], > 0. The half width is 3 sigma_n if that is larger. Only
   /// observations in the polygon can be associated with the segment.
   double min_half_width = 0.1;
   double growth = 0.3;  ///< the polygon extends beyond both ends of the segment by this length [m], >= 0
-  /// Adjacent beams are linked if their ends are less than this apart [m], > 0.
+  /// Adjacent beams belong together if their ends are less than this apart [m], > 0. Also used for links between
+  /// segments, for merges and for holes.
   double gap = 0.5;
   SegmentAssociation association = SegmentAssociation::Surface;  ///< which segment an observation belongs to
   MergeCandidates merge_candidates = MergeCandidates::Near;      ///< which segments can be merged
   bool split_holes = true;  ///< splits a segment where it has no evidence for more than `gap`, without a vote
-  /// map() fits the lines without the cells at their ends, and extends free ends to walls less than 15 cm away.
+  /// map() fits the lines without the cells at their ends, and moves free ends to walls less than 15 cm away.
   bool adjust_ends = true;
   bool prune = true;     ///< deletes segments if many more rays cross them than end on them
   bool optimise = true;  ///< map() optimises all segments together, if SegmentUtility::optimisable() is true
@@ -150,9 +163,9 @@ class GAUSSMAP_API SegmentFitter {
   /// choose it: UnscentedObservations for moments, SampledObservations for particles, both with the noise of the
   /// options.
   ///
-  /// A model of your own replaces these points. SegmentFitterOptions::noise is then used only for the covariances of
-  /// the segments. Throws std::invalid_argument if an option is out of range; the message gives the option and the
-  /// rule.
+  /// A model of your own replaces the model of the options. SegmentFitterOptions::noise is then no longer used for the
+  /// points of an observation, but still for the covariances of the segments and for SegmentAssociation::Surface.
+  /// Throws std::invalid_argument if an option is out of range; the message gives the option and the rule.
   explicit SegmentFitter(const SegmentFitterOptions& options = {}, std::shared_ptr<SegmentUtility> utility = {},
                          std::shared_ptr<const ObservationModel> observation_model = {});
   ~SegmentFitter();
@@ -170,7 +183,7 @@ class GAUSSMAP_API SegmentFitter {
   /// Moves the observer to a position [m, map frame] without a scan, Leal 2000 Fig. 9 (b).
   ///
   /// The utility receives the position and votes again on the segments that SegmentUtility::reconsider() selects. With
-  /// ViewpointDependentUtility, the map gets more detail near the position, and less where the observer was before. Of
+  /// ViewpointDependentUtility, the map gets more detail near the position, and less where the observer was before. In
   /// the result, the members that describe a scan are 0. Throws std::invalid_argument if the position is not finite.
   SegmentStatistics observe(const Vector<2>& position);
 

@@ -20,22 +20,22 @@ struct SensorNoise {
 
 /// A possible end of a beam and its weight. The weights of one observation sum to 1.
 struct ObservationPoint {
-  Vector<2> position{0.0, 0.0};  ///< [m], map frame
-  double weight = 0.0;           ///< share of the observation
+  Vector<2> position{0.0, 0.0};  ///< [m], frame in which the pose of the scan is given
+  double weight = 0.0;           ///< share of the observation, >= 0
 };
 
-/// Computes where a beam can have ended. h of Leal 2000 eq. (1) is the end of a beam, computed from its range, its
-/// bearing and the pose. The model applies h to possible ranges, bearings and poses, and does not
-/// linearise h.
+/// Computes where a beam can have ended. The function h of Leal 2000 eq. (1) gives the end of a beam from its range,
+/// its bearing and the pose. A model applies h to possible ranges, bearings and poses. It does not linearise h.
 class GAUSSMAP_API ObservationModel {
  public:
   virtual ~ObservationModel() = default;
   /// Replaces the content of `points` by the possible ends of one beam. The beam must have a return. `number` is the
   /// number of the observation; it is different for every observation of the map.
   ///
-  /// The points must be in the frame of the pose of the scan. SegmentFitter moves the origin of this frame near the
-  /// map, so that the coordinates are small. EvidencePolicy::ParticleSets needs M points of equal weight; if a model
-  /// returns others, M of them are drawn by their weights.
+  /// The points must be in the frame in which the pose of the scan is given. SegmentFitter calls the model with an
+  /// origin near the map, so that the coordinates are small. EvidencePolicy::ParticleSets needs M points of equal
+  /// weight. If a model returns other points, SegmentFitter draws M of them by their weights; a point can be drawn
+  /// several times.
   virtual void observe(const LaserScan& scan, std::size_t beam, std::uint64_t number,
                        std::vector<ObservationPoint>& points) const = 0;
 };

@@ -26,7 +26,7 @@ struct SegmentGoals {
 };
 
 /// Votes for a split, a merge or no change of a segment. The highest vote wins, Leal 2000 eq. (3). A split or merge
-/// must have more than the vote for no change.
+/// wins only if its vote is higher than the vote for no change.
 class GAUSSMAP_API SegmentUtility {
  public:
   virtual ~SegmentUtility() = default;
@@ -85,8 +85,8 @@ struct ViewpointDependentOptions {
 ///
 /// After the observer has left, the splits near its place are undone. The text of the paper says this, but its equation
 /// does not. This class merges two segments outside the field if together they are shorter than l_min. Most of them
-/// come from splits when the observer was near. Short segments that were created so are merged too, so outside the
-/// field the map can be coarser than that of eq. (4).
+/// come from splits when the observer was near. Segments that were short from the beginning are merged too. Outside the
+/// field, the map can therefore be coarser than that of eq. (4).
 class GAUSSMAP_API ViewpointDependentUtility : public SegmentUtility {
  public:
   /// Stores the options. Throws std::invalid_argument if an option is out of range; the message names the option.

@@ -39,8 +39,10 @@ struct GAUSSMAP_API DepthNoise {
 
 /// Decides when beams pass through a point.
 ///
-/// A length that is std::nullopt has a default. Functions that know the cells of a map use this default for finest
-/// cells of 15 mm and more. For smaller cells it shrinks. At 2 mm and less, it is as many cells as at a side of 0.1 m.
+/// If a length is std::nullopt, its default depends on the side of the finest cells of the map. Each option gives two
+/// values: a length in metres, used for sides of 15 mm and more, and a number of cells, used for sides of about 2 mm
+/// and less. Between these sides, the default shrinks with the square of the side. visibilityOf() does not know a map
+/// and uses the length in metres.
 struct VisibilityOptions {
   /// The ranges of all beams around the point must exceed the range of the point by more than this [m], >= 0.
   /// std::nullopt: 0.3 m; 3 cells for cells of 2 mm and less.
@@ -54,9 +56,8 @@ struct VisibilityOptions {
   /// none for a SphericalProjection, because both limits include the noise of a lidar; DepthNoise::camera() for a
   /// PlanarProjection.
   std::optional<DepthNoise> noise = std::nullopt;
-  /// PlanarProjection only: minimum distance of the pixels around the point, at the depth of the point [m], >= 0. It
-  /// allows for the errors of the poses. std::nullopt: 0.03 m; 0.3 cells for cells of 2 mm
-  /// and less.
+  /// PlanarProjection only: minimum distance between the pixels around the point, at the depth of the point [m], >= 0.
+  /// It allows for the errors of the poses. std::nullopt: 0.03 m; 0.3 cells for cells of 2 mm and less.
   std::optional<double> spacing = std::nullopt;
 };
 
@@ -68,9 +69,9 @@ struct VisibilityOptions {
 GAUSSMAP_API Visibility visibilityOf(const RangeImage& image, const Eigen::Vector3d& point,
                                      const VisibilityOptions& options = {});
 
-/// The observations of one cell or cluster by all scans. They explain why it was kept or deleted. With
-/// HitRule::RangeImage of OnlineMapper, `hits` are the scans that raised its log-odds and `misses` those that lowered
-/// them.
+/// The observations of one cell or cluster by all scans. They explain why it was kept or deleted. If OnlineMapper uses
+/// HitRule::RangeImage, the meaning differs: a hit is then a scan that raised the log-odds, and a miss is a scan that
+/// lowered them.
 struct Evidence {
   std::uint32_t hits = 0;       ///< number of scans that measured a point in the cell
   std::uint32_t misses = 0;     ///< number of scans whose beams passed through the cell
@@ -87,12 +88,13 @@ struct Evidence {
   void miss() { ++misses; }
 };
 
-/// The changes of the occupancy log-odds by one scan. The defaults are those of OctoMap: probabilities of 0.7 and 0.4.
+/// The changes of the occupancy log-odds by one scan. The defaults of `hit` and `miss` are those of OctoMap, the
+/// log-odds of the probabilities 0.7 and 0.4.
 /// With them, a static cell is kept if 32 % of the scans that see its place hit it.
 struct OccupancyOptions {
   double hit = 0.85;  ///< added by a scan that measured a point in the cell, > 0
   double miss = 0.4;  ///< subtracted by a scan that passed through the cell, > 0
-  /// o_max, Yguel 2009 sec. 4.1: OnlineMapper keeps log-odds within [-max_log_odds, max_log_odds], > 0.
+  /// o_max, Yguel 2009 sec. 4.4: OnlineMapper keeps log-odds within [-max_log_odds, max_log_odds], > 0.
   double max_log_odds = 10.0;
 };
 

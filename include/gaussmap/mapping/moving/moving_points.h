@@ -40,25 +40,25 @@ struct ScanEvidence {
   std::size_t cells_visited = 0;  ///< number of tests of finest cells, over all scans
 };
 
-/// Decides which cells held an object that has moved. Lengths that are std::nullopt have the default that stands with
-/// them, see VisibilityOptions.
+/// Decides which cells held an object that has moved. If a length is std::nullopt, its default depends on the side of
+/// the finest cells, as explained at VisibilityOptions.
 struct MovingCellOptions {
   OccupancyOptions occupancy;  ///< log-odds per hit and per miss
-  double min_points = 10.0;    ///< connected freed cells with fewer points together are noise and not moving
-  /// The same limit if a scan is from a depth camera, at least min_points. It is a patch of 7 x 7 pixels: three
-  /// standard deviations of the lateral noise to each side, about 1 pixel each (Nguyen 2012).
+  double min_points = 10.0;    ///< a group of connected freed cells with fewer points is noise, not an object
+  /// The same limit if a scan is from a depth camera, at least min_points. It is about the number of points of a patch
+  /// of 7 x 7 pixels: three standard deviations of the lateral noise to each side. One is about 1 pixel (Nguyen 2012).
   double min_points_of_camera = 50.0;
   /// Cells up to this far apart are connected [m]; adjacent cells always are. std::nullopt: 0.2 m; 2 cells for cells of
   /// 2 mm and less.
   std::optional<double> link = std::nullopt;
-  /// Maximum distance that an object extends beyond its freed cells [m]. std::nullopt: 0.5 m; 5 cells for cells of 2 mm
-  /// and less.
+  /// Maximum distance of the cells of an object from one of its freed cells [m], between the means of their points.
+  /// std::nullopt: 0.5 m; 5 cells for cells of 2 mm and less.
   std::optional<double> reach = std::nullopt;
 };
 
 /// Separates the points of an object from those of a floor or wall in the same cell. The scans before and after the
-/// object was in the cell define the surface of the floor or wall. Lengths that are std::nullopt have the default that
-/// stands with them, see VisibilityOptions.
+/// object was in the cell define the surface of the floor or wall. If a length is std::nullopt, its default depends on
+/// the side of the finest cells, as explained at VisibilityOptions.
 struct SharedCellOptions {
   /// Cells within this distance can contribute points to the surface [m]. std::nullopt: 0.6 m; 6 cells for cells of 2
   /// mm and less.
@@ -66,8 +66,8 @@ struct SharedCellOptions {
   /// Maximum standard deviation of the points across a surface [m]. std::nullopt: 0.04 m; 0.4 cells for cells of 2 mm
   /// and less.
   std::optional<double> flatness = std::nullopt;
-  /// Maximum distance from the surface of a point that belongs to it [m]. Three standard deviations across the surface
-  /// are used instead if they are larger. std::nullopt: 0.01 m; 0.1 cells for cells of 2 mm and less.
+  /// Maximum distance between the surface and a point that belongs to it [m]. Three standard deviations across the
+  /// surface are used instead if they are larger. std::nullopt: 0.01 m; 0.1 cells for cells of 2 mm and less.
   std::optional<double> noise = std::nullopt;
   /// Minimum standard deviation of the points along the second axis of a surface [m]. std::nullopt: 0.05 m; 0.5 cells
   /// for cells of 2 mm and less.
@@ -166,9 +166,9 @@ struct FreePointOptions {
 /// - It is free if the nearest surfaces of the map in its direction lie clearly behind it. For this test, the means of
 ///   the leaves that are not free are drawn into a range image with pixels of 1 degree, as seen from `sensor` (see
 ///   visibilityOf()). The map has usually seen these surfaces through the place, if its sensors were near `sensor`.
-/// - It is also free if a chain of at most four adjacent cubes connects it to a free place. The side of a
-///   cube is MovingCellOptions::link. Each cube of the
-///   chain must hold a free point or a point without a cell. This rule finds the edges and the feet of an object.
+/// - It is also free if a chain of at most four adjacent cubes connects it to a free place. The side of a cube is
+///   the default of MovingCellOptions::link. Each cube of the chain must hold a free point or a point without a cell.
+///   This rule finds the edges and the feet of an object.
 ///
 /// So a static object that the map has not seen gets false, unless it stands in front of a surface of the map. Throws
 /// std::invalid_argument if UnknownSpace::Automatic needs the position of the sensor and it is not finite.
