@@ -33,7 +33,7 @@ void reportFigures(Report& report) {
   report.table(
       {"figure", "shows", "here"},
       {{"Yguel 1", "scene, fine scale, coarse scale, refined coarse scale", "[The figures of the papers](accuracy.md)"},
-       {"Yguel 2, 3", "tensors; the parts of the system", "[Architecture](architecture.md)"},
+       {"Yguel 2, 3", "an ellipsoid and its tensors; the parts of the system", "[Architecture](architecture.md)"},
        {"Yguel 4", "occupancy and range image", "[Moving objects](moving-objects.md)"},
        {"Yguel 5", "contribution to eq. (6), error of cells",
         "`gaussmap view --color contribution`, `--color cell-error`"},
