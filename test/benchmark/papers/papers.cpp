@@ -52,7 +52,7 @@ constexpr const char* kPreface = R"(# The papers, rerun and judged
 gaussmap implements two papers: Yguel et al. 2009, "Error-Driven Refinement of Multi-scale Gaussian Maps", and Leal,
 Scheding and Dissanayake 2000, who build maps of line segments from particles. This page repeats their experiments on
 other data and judges their claims. `gaussmap_benchmark papers --data DIR --output docs/reproduction.md` writes the
-whole page. No number and no verdict is typed by hand. [The glossary](glossary.md) explains the terms.
+whole page and computes all its numbers. [The glossary](glossary.md) explains the terms.
 
 What is compared:
 
@@ -77,8 +77,8 @@ sets. A verdict "yes" means that the claim holds on all data sets. A division by
 
 The data: simulated places (a floor plan, a street, halls); the log of the Intel Research Lab (910 scans, by Dirk
 Haehnel); a drive of MulRan (21 scans). The table of section 5.2 also uses a scan of KITTI and an RGB-D image of an
-office. Every number comes from one run with fixed seeds. The exceptions are the tables of Leal 2000
-over l_min and over the number of particles: there, *as printed* is the mean of two seeds.)";
+office. Every number comes from one run with fixed seeds. The exceptions are the tables of Leal 2000 over l_min and over
+the number of particles: there, *as printed* is the mean of two seeds.)";
 
 struct Results {
   std::vector<OverTime> over_time;
