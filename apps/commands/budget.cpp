@@ -35,9 +35,10 @@ void addInsertOptions(Command& command, BudgetInput& input) {
   const RefineOptions paper = RefineOptions::yguel2009();
   const std::string group = "With --method insert";
   command
-      .number("--queue", refine.queue, 0, 1000000000,
-              "cells refined at a time; 0 = 1/250 of the cells of the scale, at least 4 (paper: " +
-                  std::to_string(paper.queue) + ")")
+      .number(
+          "--queue", refine.queue, 0, 1000000000,
+          "number of cells that get a cluster in one round; 0 = 1/250 of the cells of the scale, at least 4 (paper: " +
+              std::to_string(paper.queue) + ")")
       .group(group);
   command
       .number("--max-swaps", refine.max_swaps, 0, 1000000,
@@ -46,7 +47,7 @@ void addInsertOptions(Command& command, BudgetInput& input) {
   command
       .choiceOf(
           "--seed-rule", refine.seed_rule, kSeedRules,
-          R"(shape of a new cluster: that of the cluster around it (parent), or of the finer Gaussian at its place,
+          R"(first covariance of a new cluster: that of the cluster around it (parent), or of the finer Gaussian there,
                 as in the paper (datum))")
       .group(group);
   command
@@ -55,7 +56,7 @@ void addInsertOptions(Command& command, BudgetInput& input) {
       .group(group);
   command
       .flag("--learning-factor", refine.learning_factor,
-            "multiply the error of eq. (6) by 1 - learning rate of the finer Gaussians, as in the paper")
+            "weight finer Gaussians by 1 - learning rate in the error of a cell, eq. (6), as in the paper")
       .group(group);
   command
       .choice("--distance", input.distance, Command::wordsOf(kDistances),
@@ -198,7 +199,8 @@ void checkBudget(const BudgetInput& input) {
     throw UsageError("--method insert: supports only --budget and --max-gaussians");
   if (input.method == "insert" && input.cost) throw UsageError("--cost: only for --method agglomerate");
   const std::string option = insertOption(input);
-  if (input.method != "insert" && !option.empty()) throw UsageError(option + ": only for --method insert");
+  if (input.method != "insert" && !option.empty())
+    throw UsageError(option + ": only for --method insert; add this option");
 }
 
 std::string insertOption(const BudgetInput& input) {

@@ -31,9 +31,10 @@ const Help kCompressHelp = {
   - For each Gaussian of the cell, 95 % of its samples lie within --max-error of a mean of the finest scale.
   - Each mean of the finest scale below the cell lies within --max-error of an ellipsoid of the cell (95 % of the mass).
 With --max-cell-error instead, all finer cells below a cell are removed if the error of this cell, and of every coarse
-cell below it, is small: the mean squared Mahalanobis distance from a Gaussian of the next finer scale to the nearest
-Gaussian of the cell, Yguel et al. 2009, eq. (6). It has no unit. For a flat floor with one Gaussian per cell, it is in
-the hundreds. --as-in-paper needs --max-cell-error and multiplies the error by 1 - learning rate (--learning-factor).
+cell below it, is at most this value. The error is the mean squared Mahalanobis distance from a Gaussian of the next
+finer scale to the nearest Gaussian of the cell, Yguel et al. 2009, eq. (6). It has no unit. For a flat floor with one
+Gaussian per cell, it is in the hundreds. --as-in-paper: --learning-factor, and --max-cell-error is needed.
+
 The other Gaussians stay unchanged. The result accepts no more scans and cannot be refined, so refine first.)"};
 
 std::string limitText(const CompressCommand& command) {
@@ -48,10 +49,10 @@ std::string limitText(const CompressCommand& command) {
 void checkLimits(const CompressCommand& command) {
   if (command.as_in_paper && command.max_error)
     throw UsageError(
-        "--max-error: a distance, but --as-in-paper compares the error of eq. (6), which has no unit; give "
+        "--max-error: not with --as-in-paper, which limits the error of eq. (6) and not a distance; use "
         "--max-cell-error");
   if (!command.max_error && !command.max_cell_error)
-    throw UsageError(command.as_in_paper ? "--as-in-paper needs --max-cell-error"
+    throw UsageError(command.as_in_paper ? "--as-in-paper: give the limit with --max-cell-error"
                                          : "compress needs --max-error or --max-cell-error");
   if (command.compress.learning_factor && command.max_error)
     throw UsageError("--learning-factor: only with --max-cell-error");
@@ -118,7 +119,7 @@ void addCompress(CLI::App& app) {
         options->compress = CompressOptions::yguel2009();
         options->as_in_paper = true;
       },
-      "use the settings of Yguel et al. 2009, with --max-cell-error");
+      "use the settings of Yguel et al. 2009; needs --max-cell-error");
   command.number("--max-error", options->max_error, 1e-9, 1e9,
                  "maximum distance between a coarse cell and the finest scale [m]");
   command
@@ -128,7 +129,7 @@ void addCompress(CLI::App& app) {
   command.exclusive({"--max-error", "--max-cell-error"});
   command
       .flag("--learning-factor", options->compress.learning_factor,
-            "multiply the error of eq. (6) by 1 - learning rate of the finer Gaussians, as in the paper")
+            "weight finer Gaussians by 1 - learning rate in the error of a cell, eq. (6), as in the paper")
       .rare();
   command.seed(options->compress.seed, "seed of the samples").rare();
   addRunOptions(command, *options);

@@ -228,7 +228,7 @@ void addDraw(CLI::App& app) {
   command.flag("--overlay", options->overlay, "draw the coarsest and the finest scale over each other, and the cells");
   command
       .choiceOf("--color", options->colour, kDrawColours,
-                "height, or errors of coarse cells: contribution of each finer Gaussian, or error of each cell")
+                "colour by height, contribution of a Gaussian to the error of its coarse cell, or error of a cell")
       .rare();
   command.excludes("--overlay", {"--color"});
   command.numbers("--box", options->box, 4, -1e9, 1e9, "draw only the part from x0 y0 to x1 y1 [m]")

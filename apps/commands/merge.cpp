@@ -37,9 +37,9 @@ Final maps, and maps that are or were moved or resampled, have no exact moments.
 holds Gaussians only; --exact refuses it. Compressed maps need --method clusters. The first map does not move. For each
 of the others, in the same order, give --transform with its pose in the frame of the first map.
 
---as-in-paper: --method clusters --cost kl --smooth, as in Yguel et al. 2009. In every cell that both maps have, and at
-every scale, the pair of clusters with the smallest KL divergence is merged, until as many are left as the map with more
-of them has. Then the clustering runs once. Options that are also given override these settings.)"};
+--as-in-paper: --method clusters --cost kl --smooth, as in Yguel et al. 2009. In every coarse cell that both maps have,
+the pair of clusters with the smallest KL divergence is merged, again and again. If the cell has 3 clusters in one map
+and 5 in the other, 5 are left. Then the clustering runs once. Options that are also given override these settings.)"};
 
 std::string gridOf(const MapOptions& options) {
   return "cells of " + Json(options.resolution).dump() + " m, ratio " + std::to_string(options.ratio) + ", " +
@@ -144,9 +144,10 @@ void addMerge(CLI::App& app) {
       },
       "use the settings of Yguel et al. 2009");
   command
-      .choiceOf("--method", options->merging.method, kMergeMethods,
-                R"(coarse scales: from the finer scale, with the number of clusters fixed per scale (finer-scales),
-                or from the clusters of both maps, with the number fixed per cell, as in the paper (clusters))")
+      .choiceOf(
+          "--method", options->merging.method, kMergeMethods,
+          R"(source of the coarse scales: the finer scale, with the number of clusters fixed per scale (finer-scales),
+                or the clusters of both maps, with the number fixed per cell, as in the paper (clusters))")
       .rare();
   command
       .choiceOf("--cost", options->merging.merge_cost, mergeCosts(),

@@ -31,7 +31,7 @@ Readers see either the old or the new file.
 
 --online adds one scan after the other, marks cells that the laser sees through as free, and deletes what has moved.
 With --as-in-paper, cells, learning, occupancy, deletion and refinement are those of Yguel et al. 2009. Options that are
-also given override these settings. The paper does not print the size of the budget (--budget).
+also given override these settings. The paper prints no budget, so --budget keeps its default.
 
 --planar builds a map in the plane z = 0 from scans of a planar laser: files of any kind, logs of CARMEN, LaserScan
 messages of recordings. 3-D scans need --slice: points between two heights of the map frame. With --online, only the

@@ -21,9 +21,10 @@ const Help kRefineHelp = {
     R"(The coarse scales are rebuilt from the finest scale. The result equals that of pcd2map with the same budget and
 seed. A compressed map cannot be refined, because its finest scale is incomplete.
 
---as-in-paper: inserts clusters as Yguel et al. 2009 print it, see --method insert. 4 cells are refined at a time, a new
-cluster starts as a copy of a finer Gaussian, and free cells get no more clusters. Options that are also given override
-these settings. --budget is not one of them.)"};
+--as-in-paper: --method insert --queue 4 --seed-rule datum --only-occupied --learning-factor, as in Yguel et al. 2009.
+4 cells get a cluster in one round, a new cluster starts as a copy of a finer Gaussian, and free cells get no more
+clusters. Options that are also given override these settings. The paper prints no budget, so --budget keeps its
+default.)"};
 
 template <int D>
 void run(RefineCommand command) {

@@ -124,7 +124,7 @@ void runObservation(const SegmentsCommand& command) {
   if (command.evidence) option = "--evidence";
   if (command.evidence_beside) option = "--evidence-beside";
   if (!option.empty()) throw UsageError(option + ": not with --observation, which makes no map");
-  if (command.outputs.empty()) throw UsageError("--observation: give -o FILE.svg");
+  if (command.outputs.empty()) throw UsageError("--observation: no output; give -o FILE.svg");
   for (const std::string& output : command.outputs) requireExtension(output, ".svg");
   fitterOptions(command.fitter);
   checkFiles(command, {command.input.scans.paths.begin(), command.input.scans.paths.end()});
@@ -181,8 +181,8 @@ void addSegments(CLI::App& app) {
       .rare();
   command
       .text("--observation", options->observation,
-            "draw only this observation, SCAN:BEAM, both counted from 0: as a Gaussian and as particles, before and "
-            "after the projection into the plane (the paper's Figs. 1 and 2)")
+            "draw one observation instead of a map: SCAN:BEAM, both counted from 0. It is drawn as a Gaussian and as "
+            "particles, before and after the projection into the plane (the paper's Figs. 1 and 2)")
       .rare();
   command.number("--every", options->every, 1, 1000000, "use only every N-th scan, starting with the first one");
   command.text("--stats", options->stats, "CSV file to write: what each scan changed");

@@ -18,7 +18,7 @@ void addViewOptions(CLI::App& program, ViewCommand& options) {
   command.choice("--color", options.colour,
                  {"height", "scale", "normal", "weight", "occupancy", "error", "contribution", "cell-error"},
                  "colour of the Gaussians, default: height; error = distance to CLOUD, or else to the finer scales; "
-                 "contribution = to the error of the next coarser scale; cell-error = error of the cell");
+                 "contribution = to the error of the coarse cell above the Gaussian; cell-error = error of the cell");
   command.number("--sigma", options.view.sigma, 0.01, 100.0, "half axes of the ellipsoids, in standard deviations");
   command.flag("--cells", options.view.cells, "draw the occupied cells as boxes");
   command.flag("--hierarchy", options.view.hierarchy,
@@ -31,7 +31,7 @@ void addViewOptions(CLI::App& program, ViewCommand& options) {
             "top")
       .hideDefault();
   command.number("--zoom", options.view.view.zoom, 0.01, 1000.0, "magnification, 1 = the whole map");
-  command.number("--span", options.span, 0.001, 1e6, "height of the picture at the point to look at [m]").rare();
+  command.number("--span", options.span, 0.001, 1e6, "height of the picture [m], measured at the point of --at").rare();
   command.excludes("--span", {"--zoom"});
   command.numbers("--at", options.at, 3, -1e9, 1e9, "point to look at [m]; default: the middle of the map")
       .type("X Y Z");

@@ -58,7 +58,7 @@ void addOnlineOptions(Command& command, OnlineInput& input, const Option& as_in_
       command.number("--forget-below", options.forget_below, -kMaxLogOdds, kMaxLogOdds,
                      "clusters whose log-odds fall below this value are deleted"),
       command.number("--max-samples", options.max_samples, 0, 1000000000,
-                     "--occupancy-samples random: maximum samples per cluster, 0 = no limit but eq. (1)"),
+                     "--occupancy-samples random: maximum samples per cluster, 0 = as many as eq. (1) gives"),
   };
   const std::vector<Option> evidence =
       addEvidenceOptions(command, {options.occupancy, options.visibility, options.link, options.reach});
@@ -86,7 +86,7 @@ void checkOnline(const OnlineInput& input, const BudgetInput& budget, double res
   BudgetInput others = budget;
   others.refine.seed_rule = RefineOptions().seed_rule;  // the only one of these options that a refinement on line has
   if (const std::string option = insertOption(others); !option.empty())
-    throw UsageError(option + ": not with --online");
+    throw UsageError(option + ": not with --online; refine the map afterwards with gaussmap refine");
   checkOutputs({input.stats, input.removed}, map.force, inputs, {map.path});
   refuseOtherKinds(input.stats, "a table", {".csv", ".txt"});
   refuseOtherKinds(input.removed, "a PCD file", {".pcd"});

@@ -10,7 +10,7 @@ namespace gaussmap::app {
 void requirePoints(const PointCounts& counts, const Scans& scans, const Slice& slice) {
   if (counts.accepted > 0) return;
   if (counts.read == 0 && !slice.empty())
-    throw std::runtime_error(nameOf(scans) + ": no point lies between the heights of --slice");
+    throw std::runtime_error(nameOf(scans) + ": no point lies between the heights of --slice; give other heights");
   std::string text = nameOf(scans) + ": none of the " + std::to_string(counts.read) +
                      " points is usable: " + std::to_string(counts.non_finite) + " are not finite, " +
                      std::to_string(counts.at_sensor) + " at range 0, " + std::to_string(counts.beyond_range) +

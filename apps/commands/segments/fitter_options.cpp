@@ -64,7 +64,7 @@ void addFitterOptions(Command& command, FitterInput& input) {
   };
   for (const Option& option : {
            command.preset("--as-in-paper", as_in_paper,
-                          "map as printed in Leal 2000; other options override single settings"),
+                          "use the settings of Leal et al. 2000; options that are also given override them"),
            command.choice("--utility", input.utility,
                           {"description-length", "viewpoint-invariant", "viewpoint-dependent"},
                           "criterion for splitting and merging segments"),
@@ -102,14 +102,17 @@ void addFitterOptions(Command& command, FitterInput& input) {
                             or anywhere in the segment, as in the paper (segment))"),
            command.choiceOf(
                "--association", options.association, kAssociations,
-               "segment of an observation: nearest with a fitting surface (surface), or nearest whose polygon contains "
-               "the mean of the samples, as in the paper (polygon)"),
+               "which segment gets an observation: the nearest one with a fitting surface (surface), or "
+               "the nearest one whose polygon contains the mean of the samples, as in the paper (polygon)"),
            command.choiceOf("--merge-candidates", options.merge_candidates, kCandidates,
-                            "segments that can be merged: near ones, or only linked ones, as in the paper"),
+                            "which segments can be merged: near ones (near), or only neighbours in a chain, as in the "
+                            "paper (linked)"),
            command.choiceOf("--holes", options.split_holes, kHoles,
-                            "segments without evidence for more than 0.5 m: split there, or keep, as in the paper"),
+                            "segments without evidence for more than 0.5 m: split them there (split), or not, as in "
+                            "the paper (keep)"),
            command.choiceOf("--ends", options.adjust_ends, kEnds,
-                            "ends of segments: adjusted to nearby walls, or fitted, as in the paper"),
+                            "ends of segments: adjusted to nearby walls (adjusted), or those of the evidence, as in "
+                            "the paper (fitted)"),
            command.flag("--no-prune", input.no_prune, "keep segments that many rays pass through"),
            command.flag("--no-refine", input.no_refine,
                         "do not optimise the whole map at the end; the utilities of the paper never do"),

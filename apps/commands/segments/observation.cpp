@@ -67,7 +67,7 @@ void drawOneObservation(const SegmentsCommand& command, const LaserScans& input)
   const LaserScan& scan = input.scans[index];
   const std::size_t beam =
       indexFrom(colon == std::string::npos ? "" : given.substr(colon + 1), "beam", scan.ranges.size());
-  if (!scan.returned(beam)) throw UsageError("--observation " + given + ": this beam has no return");
+  if (!scan.returned(beam)) throw UsageError("--observation " + given + ": this beam has no return; give another beam");
 
   const SegmentFitterOptions options = fitterOptions(command.fitter);
   const std::uint64_t seed = options.particles.seed;

@@ -27,7 +27,8 @@ double coordinate(const std::string& word, const std::string& path, std::size_t 
   double value = 0.0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
-    throw FileError(path, "line " + std::to_string(line) + ": '" + word + "' is not a coordinate in metres");
+    throw FileError(path,
+                    "line " + std::to_string(line) + ": '" + word + "' is not a coordinate in metres; expected x y");
   return value;
 }
 
@@ -47,8 +48,8 @@ std::vector<Vector<2>> readObserverPath(const std::string& path) {
       break;
     }
     if (words.size() != 2)
-      throw FileError(path, "line " + std::to_string(line) + " has " + std::to_string(words.size()) +
-                                " numbers; a position is x y");
+      throw FileError(
+          path, "line " + std::to_string(line) + " has " + std::to_string(words.size()) + " numbers; expected x y");
     const double x = coordinate(words[0], path, line), y = coordinate(words[1], path, line);
     positions.emplace_back(x, y);
   }

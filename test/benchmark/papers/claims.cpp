@@ -84,8 +84,8 @@ void claimWithinTwoSigma(const std::vector<OffLine>& off_line, Report& report) {
     return spread;
   };
   report.claim({"Yguel", "sec. 6",
-                "The first claim, judged by the largest distance of samples within 2 sigma (off line)", byMethod(off),
-                verdictOn(3.0, off)});
+                "4 x the clusters divide the Hausdorff distance by 3, if only samples within 2 sigma count (off line)",
+                byMethod(off), verdictOn(3.0, off)});
 }
 
 void claimIntermediateScale(const std::vector<OffLine>& off_line, Report& report) {
@@ -96,10 +96,12 @@ void claimIntermediateScale(const std::vector<OffLine>& off_line, Report& report
         spread.add(rowOf(one, "uniform grid", 4.0).distances.mean / rowOf(one, method, 4.0).distances.mean);
     return spread;
   };
-  report.claim({"Yguel", "sec. 6", "An intermediate scale could not have done what the refinement does (3-D)",
-                "mean distance of a uniform grid of as many Gaussians (4 x), divided by that of the refined scale: " +
-                    byMethod(ratioOf),
-                verdictOn(kClearlyBetter / kNearly, ratioOf)});
+  report.claim(
+      {"Yguel", "sec. 6", "An intermediate scale could not have done what the refinement does (3-D)",
+       "mean distance of a uniform grid with as many Gaussians (4 x), divided by that of the refined scale; above "
+       "1 x, the refined scale is better: " +
+           byMethod(ratioOf),
+       verdictOn(kClearlyBetter / kNearly, ratioOf)});
 }
 
 void claimStalls(const std::vector<OffLine>& off_line, Report& report) {
@@ -116,10 +118,10 @@ void claimStalls(const std::vector<OffLine>& off_line, Report& report) {
     figures += (m == 0 ? "" : "; ") + kRefinements[m] + " " + percent(share);
   }
   report.claim({"Yguel", "sec. 6, drawbacks", "Sometimes the Hausdorff distance hardly falls when clusters are added",
-                "rounds in which it falls by less than 1 %: " + figures,
-                printed > 0.5   ? "True, and not only sometimes: most rounds of the printed method do not help."
+                "share of the rounds of refinement in which it falls by less than 1 %: " + figures,
+                printed > 0.5   ? "True, and even in most rounds of the method as printed."
                 : printed > 0.1 ? "True."
-                                : "Seldom seen here."});
+                                : "Rare here."});
 }
 
 void claimSize(const std::vector<OffLine>& off_line, Report& report) {
@@ -130,14 +132,14 @@ void claimSize(const std::vector<OffLine>& off_line, Report& report) {
       one.add(double(set.finest) / double(rowOf(set, kRefinements[0], 1.0).gaussians));
       refined.add(double(set.finest) / double(rowOf(set, kRefinements[0], 4.0).gaussians));
     }
-    report.claim(
-        {"Yguel", "sec. 6",
-         std::string("The size ratio of finest to coarsest scale (") + (dimensions == 2 ? "1e4 in 2-D" : "1e8 in 3-D") +
-             ") is kept by the refinement",
-         text(one, number) + " Gaussians per coarse Gaussian without refinement, " + text(refined, number) + " at 4 x",
-         "The printed figure is at most a ratio of volumes of cells (100 to the power of " +
-             std::to_string(dimensions) + " = " + (dimensions == 2 ? "1e4" : "1e6") +
-             "); surfaces fill few cells, so maps are far from it. Refinement to 4 x divides the ratio by 4."});
+    report.claim({"Yguel", "sec. 6",
+                  std::string("The size ratio of finest to coarsest scale (") +
+                      (dimensions == 2 ? "1e4 in 2-D" : "1e8 in 3-D") + ") is kept by the refinement",
+                  text(one, number) + " finest Gaussians per coarse Gaussian without refinement, " +
+                      text(refined, number) + " at 4 x",
+                  std::string("Not here. A coarse cell has room for ") + (dimensions == 2 ? "1e4" : "1e6") +
+                      " finest cells (100 to the power of " + std::to_string(dimensions) +
+                      "), but surfaces fill few of them. Refinement to 4 x divides the ratio by 4."});
   }
 }
 
@@ -154,7 +156,7 @@ void claimCost(const std::vector<OverTime>& over_time, Report& report) {
     figures += (figures.empty() ? "" : "; ") + method + " " + text(spread, percent);
   }
   report.claim({"Yguel", "sec. 7", "The additional cost of inserting clusters is marginal",
-                "share of the refinement in the time on line: " + figures,
+                "share of the refinement in the time of building a map on line: " + figures,
                 printed.high < 0.1  ? "True."
                 : printed.low < 0.1 ? "True on some of the data."
                                     : "Not true here: it takes a visible share of the time."});
@@ -171,8 +173,8 @@ void claimRefinement(const std::vector<OffLine>& off_line, const std::vector<Ove
   claimFactor("sec. 6", "In 3-D, 3.4 x the clusters of the coarsest scale (53 to 181) divide the error by 3", 3.4,
               &DistanceSummary::max, 3.0, off, {}, report);
   claimWithinTwoSigma(off_line, report);
-  claimFactor("sec. 6", "The first claim, judged by the mean distance", 4.0, &DistanceSummary::mean, 3.0, off_line,
-              over_time, report);
+  claimFactor("sec. 6", "4 x the clusters divide the distance by 3, if the mean counts", 4.0, &DistanceSummary::mean,
+              3.0, off_line, over_time, report);
   claimIntermediateScale(off_line, report);
   claimStalls(off_line, report);
   claimSize(off_line, report);

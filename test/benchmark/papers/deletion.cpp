@@ -74,16 +74,17 @@ void reportDeletion(const std::vector<DeletionRow>& rows, Report& report) {
     cells.push_back({row.method, percent(row.score.staticAccuracy()), percent(row.score.dynamicAccuracy()),
                      app::formatted("%.2f", 1000.0 * row.finest_mean)});
   report.paragraph(
-      "The simulated street with three cars and two pedestrians, 60 scans, cells of 0.1 m. A point counts as deleted "
-      "if its finest cell is not in the map at the end.");
+      "The simulated street with three moving cars and two pedestrians, 60 scans, finest cells of 0.1 m. A point of a "
+      "scan counts as deleted if the map has no finest cell at its place at the end. \"Exact sums\": each cell has the "
+      "exact mean and covariance of all its points (`--learning-rate sample-mean`).");
   report.table({"on-line map", "points at rest that are kept", "points of moving objects that are deleted",
                 "finest scale, mean distance to the surface [mm]"},
                cells);
   const DeletionRow &printed = rows[0], &exact = rows[1], &own = rows[2];
   const double gone = printed.score.dynamicAccuracy(), kept = printed.score.staticAccuracy();
   report.claim({"Yguel", "sec. 5.3, 7", "Clusters of low occupancy are deleted, which deals with moving objects",
-                percent(gone) + " of the points of moving objects and " + percent(1.0 - kept) +
-                    " of those at rest are deleted; with the defaults of the library " +
+                "as printed, " + percent(gone) + " of the points of moving objects and " + percent(1.0 - kept) +
+                    " of those at rest are deleted; with the defaults of the library, " +
                     percent(own.score.dynamicAccuracy()) + " and " + percent(1.0 - own.score.staticAccuracy()),
                 gone > 0.9 && kept > 0.99   ? "True."
                 : gone > 0.5 && kept > 0.95 ? "Partly: a part of the moving objects stays."
@@ -91,7 +92,7 @@ void reportDeletion(const std::vector<DeletionRow>& rows, Report& report) {
                                             : "Hardly: most of the moving objects stay."});
   const double ratio = printed.finest_mean / exact.finest_mean;
   report.claim({"Yguel", "sec. 4.4, eq. (5)", "A learning rate from the occupancy lets clusters converge",
-                "mean distance of the finest scale from the surface, divided by that of exact sums: " + times(ratio),
+                "mean distance of the finest scale from the surface, divided by that with exact sums: " + times(ratio),
                 ratio < 1.05  ? "True: the clusters are as good as exact sums."
                 : ratio < 1.5 ? "Partly: the clusters come near to exact sums, but stay behind them."
                               : "Not true here: exact sums are better, and they do not depend on the order."});

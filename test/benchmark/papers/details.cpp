@@ -34,8 +34,8 @@ std::vector<SurfaceRow> runSurfaces(std::size_t scans) {
 void reportSurfaces(const std::vector<SurfaceRow>& rows, Report& report) {
   report.heading(2, "Yguel, section 6: where the clusters go");
   report.paragraph(
-      "The coarsest scale of the simulated street. A place is flat if all surface within 0.5 m lies in one plane; the "
-      "other places are edges, corners, and thin or curved objects.");
+      "The coarsest scale of the simulated street. A place is flat if all surface within 0.5 m lies in one plane. The "
+      "other places are detail: edges, corners, and thin or curved objects.");
   std::vector<std::vector<std::string>> cells;
   for (const SurfaceRow& row : rows)
     cells.push_back({row.method, times(row.budget), std::to_string(row.surface.flat.gaussians),
@@ -51,23 +51,25 @@ void reportSurfaces(const std::vector<SurfaceRow>& rows, Report& report) {
     const double detail = added(rows[i].surface.detail.gaussians, rows.front().surface.detail.gaussians);
     const double flat = added(rows[i].surface.flat.gaussians, rows.front().surface.flat.gaussians);
     const double share = detail / (detail + flat);
-    figures += "; " + rows[i].method + " " + percent(share);
+    figures += (i == 1 ? "" : "; ") + rows[i].method + " " + percent(share);
     verdict += (i == 1 ? "" : "; ") + rows[i].method + ": " +
                (share > rows[i].surface.detailShareOfArea() + 0.05 ? "yes" : "no");
   }
   verdict[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(verdict[0])));
   report.claim({"Yguel", "sec. 6, Fig. 1", "Large flat clusters remain, and detail is added at poles and corners",
-                "share of the added clusters that lies on detail, which is " +
-                    percent(rows.back().surface.detailShareOfArea()) + " of the surface (" + percent(before) +
-                    " of the clusters before)" + figures,
+                "share of the added clusters that lies on detail: " + figures + ". Detail is " +
+                    percent(rows.back().surface.detailShareOfArea()) + " of the surface, and had " + percent(before) +
+                    " of the clusters before",
                 verdict + "."});
 }
 
 void reportDistances(const std::vector<benchmark::ClusteringDistanceRow>& rows, Report& report) {
   report.heading(2, "Yguel, section 5.2: other distances in Algorithm 2");
   report.paragraph(
-      "Algorithm 2 takes the distance as a parameter. The table shows ratios to the KL divergence at equal numbers of "
-      "Gaussians, as geometric means over budgets and scales: distortion / 99 % / 95 % / mean / time.");
+      "Algorithm 2 takes the distance from a Gaussian to a cluster as a parameter. Each cell of the table has five "
+      "ratios to the KL divergence with parent seed, at equal numbers of Gaussians: distortion, 99 %, 95 %, mean, and "
+      "time. They are geometric means over budgets and scales. Smaller is better. [The notes](notes/refinement.md) "
+      "discuss the columns and the results.");
   report.paragraph(benchmark::clusteringDistanceSummary(rows));
 }
 

@@ -32,12 +32,13 @@ void reportFigures(Report& report) {
   report.heading(2, "The figures");
   report.table(
       {"figure", "shows", "here"},
-      {{"Yguel 1", "scene, fine scale, coarse scale, refined coarse scale", "[The figures of the papers](accuracy.md)"},
-       {"Yguel 2, 3", "tensors; the parts of the system", "[Architecture](architecture.md)"},
+      {{"Yguel 1", "scene, fine scale, coarse scale, refined coarse scale",
+        "[The figures of the paper](accuracy.md#the-figures-of-the-paper)"},
+       {"Yguel 2, 3", "an ellipsoid and its tensors; the parts of the system", "[Architecture](architecture.md)"},
        {"Yguel 4", "occupancy and range image", "[Moving objects](moving-objects.md)"},
        {"Yguel 5", "contribution to eq. (6), error of cells",
-        "`gaussmap view --color contribution`, `--color cell-error`"},
-       {"Yguel 6", "hierarchy of clusters", "`gaussmap view --hierarchy`"},
+        "[Where a coarse scale is wrong](accuracy.md#where-a-coarse-scale-is-wrong)"},
+       {"Yguel 6", "hierarchy of clusters", "[The figures of the paper](accuracy.md#the-figures-of-the-paper)"},
        {"Yguel 7", "planar map, two scales", "below; `gaussmap draw --overlay`"},
        {"Leal 1, 2", "one observation as a Gaussian and as particles", "[Segments](segments.md)"},
        {"Leal 3", "particles of a region", "`gaussmap segments --evidence`"},

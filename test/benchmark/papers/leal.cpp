@@ -94,7 +94,7 @@ void addParticles(const LealResults& results, Report& report) {
     rows.push_back({std::to_string(row.samples), number(row.per_metre), row.in_bins ? "per 0.25 m" : "per segment",
                     number(row.map.segments), number(row.map.length), percent(row.map.within_5cm),
                     percent(row.map.predicted_10cm), orDash(row.map.recall, percent(row.map.recall))});
-  report.paragraph("Other numbers of particles, l_min = 1 m, sigma_th = 6 cm:");
+  report.paragraph("Other numbers of particles, as printed, with l_min = 1 m and sigma_th = 6 cm:");
   report.table({"per observation", "per metre", "limit", "segments", "length [m]", "other scans within 5 cm",
                 "other rays predicted within 10 cm", "true walls found"},
                rows);
@@ -108,7 +108,7 @@ void addExample(const LealResults& results, Report& report) {
                     : row.dependent                   ? "eq. (5)"
                                                       : "eq. (4)",
                     number(row.segments), number(row.length), centimetres(std::sqrt(row.normal_variance))});
-  report.paragraph("A part of 7 m x 8 m as in Figs. 4 and 5, l_min = 1.5 m, a = 0.53:");
+  report.paragraph("A part of 7 m x 8 m as in Figs. 4 and 5, with l_min = 1.5 m and alpha = 0.53 (`--view-scale`):");
   report.table({"method", "sigma_th [cm]", "utility", "segments", "length [m]", "normal deviation [cm]"}, rows);
 }
 
@@ -119,8 +119,10 @@ void addObserver(const LealResults& results, Report& report) {
                     number(row.there.segments), number(row.unvisited.segments), number(row.after.segments),
                     number(row.total_invariant), number(row.total_before), number(row.total_after)});
   report.paragraph(
-      "An observer walks through the finished map as in Fig. 9 (l_min = 3 m, a = 0.33, eq. 5). Mean number of segments "
-      "within 5 m of a place of its path, and segments of the whole map:");
+      "An observer walks through the finished map as in Fig. 9, with eq. (5), l_min = 3 m and alpha = 0.33 "
+      "(`--view-scale`). The first four columns of numbers are mean numbers of segments within 5 m of a place of its "
+      "path. An observer has left a place when it is 15 m away. The last three columns are the segments of the whole "
+      "map:");
   report.table(
       {"method", "sigma_th [cm]", "near a place, no observer", "while it is there", "places that it left, before",
        "after it left", "whole map, eq. (4)", "eq. (5), no observer", "eq. (5), after it left"},
@@ -159,14 +161,14 @@ double bestMinLength(const LealResults& results) {
 
 void claimMinLength(const std::vector<LealResults>& all, Report& report) {
   report.claim({"Leal", "sec. 5, Fig. 6", "The best l_min is about 1 m",
-                "l_min that predicts most rays of other scans within 10 cm: " +
+                "l_min of the map that predicts the most rays of other scans within 10 cm: " +
                     onAll(all, [](const LealResults& one) { return number(bestMinLength(one)) + " m"; }),
                 verdictOn(all, [](const LealResults& one) {
                   const double best = bestMinLength(one);
                   return best >= 0.7 && best <= 1.5;
                 })});
   report.claim({"Leal", "sec. 5, Fig. 7", "With l_min of 0.7 m or less, segments fit the noise and not the walls",
-                "other rays predicted within 10 cm, and length of the map, at 0.5 m and at 1 m: " +
+                "rays of other scans predicted within 10 cm, and length of the map, with l_min = 0.5 m and 1 m: " +
                     onAll(all,
                           [](const LealResults& one) {
                             const benchmark::LealMeasure small = printedAt(one, 0.5), large = printedAt(one, 1.0);
@@ -178,9 +180,9 @@ void claimMinLength(const std::vector<LealResults>& all, Report& report) {
                     [](const LealResults& one) {
                       return printedAt(one, 0.5).predicted_10cm < printedAt(one, 1.0).predicted_10cm;
                     },
-                    "It depends on sigma_th: with a threshold well above the noise, l_min hardly matters.")});
+                    "It depends on sigma_th: if sigma_th is well above the noise, l_min hardly matters.")});
   report.claim({"Leal", "sec. 5, Fig. 7", "From l_min = 1.5 m on, the error of the map is large",
-                "normal deviation at 1 / 1.5 / 3 m [cm]: " +
+                "normal deviation [cm] with l_min = 1 / 1.5 / 3 m: " +
                     onAll(all,
                           [](const LealResults& one) {
                             std::string text;
@@ -194,12 +196,12 @@ void claimMinLength(const std::vector<LealResults>& all, Report& report) {
                     [](const LealResults& one) {
                       return printedAt(one, 3.0).normal_variance > 1.2 * printedAt(one, 1.0).normal_variance;
                     },
-                    "The error grows slowly; there is no limit at 1.5 m.")});
+                    "It does not jump at 1.5 m.")});
 }
 
 void claimCounts(const std::vector<LealResults>& all, Report& report) {
   report.claim({"Leal", "sec. 5, Fig. 8", "A larger l_min gives fewer segments, splits and merges",
-                "segments / splits / merges at 0.3 m and 3 m: " +
+                "segments / splits / merges with l_min = 0.3 m and 3 m: " +
                     onAll(all,
                           [](const LealResults& one) {
                             const auto three = [](const benchmark::LealMeasure& map) {
@@ -223,7 +225,7 @@ benchmark::LealMeasure withParticles(const LealResults& results, int samples, do
 void claimParticles(const std::vector<LealResults>& all, Report& report) {
   report.claim(
       {"Leal", "sec. 4.4, 5", "30 particles per observation and at most 300 per metre are enough",
-       "other scans within 5 cm with 300 / 3000 per metre: " +
+       "beam ends of other scans within 5 cm of the map, with at most 300 / 3000 particles per metre: " +
            onAll(all,
                  [](const LealResults& one) {
                    return percent(withParticles(one, 30, 300.0, false).within_5cm) + " / " +
@@ -235,7 +237,7 @@ void claimParticles(const std::vector<LealResults>& all, Report& report) {
              return withParticles(one, 30, 300.0, false).within_5cm >
                     withParticles(one, 30, 3000.0, false).within_5cm - 0.02;
            },
-           "Where a scan sees only a part of a wall, it deletes particles of the rest, and the map loses walls.")});
+           "A scan that sees only a part of a wall deletes particles of the whole wall, so the map loses walls.")});
 }
 
 void claimViewpoint(const std::vector<LealResults>& all, Report& report) {
@@ -248,7 +250,7 @@ void claimViewpoint(const std::vector<LealResults>& all, Report& report) {
   };
   report.claim(
       {"Leal", "sec. 4.2, Figs. 4, 5", "The viewpoint-dependent utility gives more detail near the observer",
-       "segments of the part of 7 m x 8 m, eq. (5) / eq. (4): " +
+       "number of segments in a part of 7 m x 8 m, with eq. (5) divided by with eq. (4): " +
            onAll(all, [&](const LealResults& one) { return times(detail(one)); }),
        verdictOn(
            all, [&](const LealResults& one) { return detail(one) > 1.1; }, "Straight walls have no detail to add.")});
@@ -260,17 +262,17 @@ void claimViewpoint(const std::vector<LealResults>& all, Report& report) {
   const auto there = [&](const LealResults& one) { return rowOf(one).there.segments / rowOf(one).before.segments; };
   const auto after = [&](const LealResults& one) { return rowOf(one).after.segments / rowOf(one).unvisited.segments; };
   report.claim({"Leal", "sec. 5, Fig. 9", "An observer that moves through the map has more detail near it",
-                "segments near a place with / without the observer: " +
+                "number of segments near a place, with the observer divided by without it: " +
                     onAll(all, [&](const LealResults& one) { return times(there(one)); }),
                 verdictOn(all, [&](const LealResults& one) { return there(one) > 1.05; })});
   report.claim(
       {"Leal", "sec. 4.2", "Elsewhere, the map reverts to the viewpoint-invariant utility",
-       "segments near a place after the observer left / before it came: " +
+       "number of segments near a place, after the observer left divided by before it came: " +
            onAll(all, [&](const LealResults& one) { return times(after(one)); }),
        verdictOn(
            all, [&](const LealResults& one) { return after(one) < 1.1; },
-           "The printed eq. (5) has no rule for this; this library adds one, which also merges some short "
-           "segments that eq. (4) keeps.")});
+           "The printed eq. (5) has no rule for this. This library adds a rule, which also merges some short segments "
+           "that eq. (4) keeps.")});
 }
 
 }  // namespace
@@ -289,10 +291,16 @@ LealResults runLeal(benchmark::LealData data, double sigma_threshold, int seeds)
 void reportLeal(const std::vector<LealResults>& all, Report& report) {
   report.heading(2, "Leal, sections 4.2 and 5: maps of segments");
   report.paragraph(
-      "The paper does not give sigma_th, the largest normal deviation of a segment. Here it is near the noise of the "
-      "particles: 2.8 cm for the simulated places, and 6 cm for the log, whose poses are less exact. The test scans of "
-      "simulated places have no noise, so their distances are errors of the map. `gaussmap_benchmark segments --study` "
-      "prints more rows.");
+      "The normal deviation is the standard deviation of the evidence across a segment, sigma_n. A segment is split if "
+      "this exceeds sigma_th and the segment is at least l_min long. The paper does not give sigma_th. Here it is near "
+      "the noise of the particles: 2.8 cm for the simulated places, and 6 cm for the log, whose poses are less exact. "
+      "Eq. (4) is the viewpoint-invariant utility, eq. (5) the viewpoint-dependent one. *moments, eq. (4)* keeps exact "
+      "moments instead of particles.");
+  report.paragraph(
+      "\"Other scans\" are scans that the map does not contain. \"Other scans within 5 cm\" is the share of their beam "
+      "ends that lie within 5 cm of a segment. \"Other rays predicted within 10 cm\" is the share of their rays that "
+      "meet the first segment within 10 cm of the measured range. For simulated places, the other scans have no noise, "
+      "so their distances are errors of the map. `gaussmap_benchmark segments --study` prints more rows.");
   for (const LealResults& results : all) {
     report.heading(3, results.data.name + ", " + std::to_string(results.data.scans.size()) + " scans");
     addStudy(results, report);
