@@ -12,7 +12,7 @@
 namespace gaussmap::app {
 namespace {
 
-constexpr double kWidth = 640, kHeight = 420, kLeft = 70, kRight = 190, kTop = 20, kBottom = 50;
+constexpr double kWidth = 700, kHeight = 420, kLeft = 70, kRight = 250, kTop = 20, kBottom = 50;
 constexpr const char* kCurveColours[] = {"#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e"};
 constexpr double kSmallest = 1e-9;  // replaces zero on a logarithmic axis
 

@@ -134,7 +134,7 @@ void reportEditing(const std::vector<std::pair<std::string, std::vector<EditedRo
       low = std::min(low, value);
       high = std::max(high, value);
     }
-    std::string text() const { return times(low) + " to " + times(high); }
+    std::string text() const { return times(low) == times(high) ? times(low) : times(low) + " to " + times(high); }
   };
   const auto claimOf = [&](const std::string& step, const std::string& place, const std::string& words) {
     Ratio mean, time;

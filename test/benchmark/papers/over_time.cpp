@@ -15,6 +15,7 @@ using namespace detail;
 namespace {
 
 constexpr std::size_t kSamples = 50000;
+constexpr std::size_t kRefineEvery = 10;  // scans, as in the paper
 
 /// What is run: the system of the paper with one of three refinements, or the defaults of the library.
 struct OnlinePlan {
@@ -40,7 +41,7 @@ OnlineOptions optionsOf(const OnlinePlan& plan, int dimensions) {
   if (plan.method == "with parent seed") options.seed_rule = ClusterSeed::ParentCovariance;
   if (plan.method == "agglomeration") options.method = RefineMethod::Agglomerate;
   if (!plan.is_limited) options.refine_cells = 0;
-  if (plan.budget == 1.0) options.refine_every = 0;
+  options.refine_every = plan.budget == 1.0 ? 0 : static_cast<int>(kRefineEvery);
   options.budget = plan.budget;
   options.threads = 1;
   return options;
@@ -68,7 +69,8 @@ OnlineRun runOnce(const Sequence<D>& sequence, const OnlinePlan& plan, int check
     run.occupancy += statistics.image_time + statistics.occupancy_time;
     run.refine += statistics.refine_time;
     const std::size_t next = total * (counts.size() + 1) / static_cast<std::size_t>(checkpoints);
-    if (i + 1 < std::max<std::size_t>(1, next)) continue;
+    const bool is_refined = (i + 1) % kRefineEvery == 0;  // a map just before a refinement has cells of new scans
+    if (i + 1 < total && (i + 1 < next || !is_refined)) continue;
     counts.push_back(i + 1);
     maps.push_back(mapper.map());
   }

@@ -80,7 +80,7 @@ std::string number(double value) {
 }
 
 std::string times(double factor) {
-  return app::formatted("%.2g", factor) + " x";
+  return number(factor) + " x";
 }
 
 std::string percent(double share) {

@@ -47,7 +47,7 @@ class Report {
 
 /// A number with three significant digits, from 1000 on a whole number.
 std::string number(double value);
-/// "3.4 x": a factor with two significant digits.
+/// "3.42 x": a factor with three significant digits.
 std::string times(double factor);
 /// "97.5 %"
 std::string percent(double share);
