@@ -29,7 +29,7 @@ struct Sequence {
 /// Returns the simulated plan (240 scans), and if `data` has it, the log of the Intel lab (910 scans), with cells of
 /// 5 cm as in the paper. At most `scans` scans of each; 0: all.
 std::vector<Sequence<2>> planarSequences(const std::filesystem::path& data, std::size_t scans);
-/// Returns the simulated street (400 scans, with a smaller sensor than usual), and if `data` has it, a drive of MulRan
+/// Returns the simulated street (320 scans, with a smaller sensor than usual), and if `data` has it, a drive of MulRan
 /// (21 scans), with cells of 10 cm as in the paper.
 std::vector<Sequence<3>> sequencesInSpace(const std::filesystem::path& data, std::size_t scans);
 
