@@ -70,11 +70,25 @@ void drawFigure7(const Sequence<2>& sequence, Report& report) {
     app::include(window, cell.low);
     app::include(window, cell.high);
   }
+  // A part of the map: the whole one would be a picture of several megabytes.
+  const Vector<2> middle = 0.5 * (window.low + window.high), half = Vector<2>::Constant(7.5);
+  window = {middle - half, middle + half};
+  const auto isOutside = [&](const Box<2>& box) {
+    return (box.high.array() < window.low.array()).any() || (box.low.array() > window.high.array()).any();
+  };
+  panel.ellipses.erase(
+      std::remove_if(panel.ellipses.begin(), panel.ellipses.end(),
+                     [&](const app::Ellipse& ellipse) {
+                       return isOutside({ellipse.centre - ellipse.reach(), ellipse.centre + ellipse.reach()});
+                     }),
+      panel.ellipses.end());
+  panel.squares.erase(std::remove_if(panel.squares.begin(), panel.squares.end(),
+                                     [&](const app::Square& square) { return isOutside(square.box); }),
+                      panel.squares.end());
   const std::string name = "Yguel-figure-7";
   app::drawMaps({panel}, window, app::BarOptions(), report.pictureFile(name));
-  report.showPicture(name, "Like Fig. 7 of Yguel 2009: " + sequence.name +
-                               ", on line as printed, at most 4 Gaussians "
-                               "per coarse cell");
+  report.showPicture(name, "Like Fig. 7 of Yguel 2009: a part of " + sequence.name +
+                               ", on line as printed, at most 4 Gaussians per coarse cell");
 }
 
 void drawExamples(const LealResults& results, Report& report) {

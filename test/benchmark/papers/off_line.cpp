@@ -115,7 +115,7 @@ void reportOffLine(const OffLine& results, Report& report) {
     if (row.method != method) {
       const int colour = static_cast<int>(plot.lines.size() / 2) + 1;
       plot.lines.push_back({row.method + ", maximum", {}, colour, false});
-      plot.lines.push_back({row.method + ", mean", {}, colour, true});
+      plot.lines.push_back({row.method + ", mean (dashed)", {}, colour, true});
       method = row.method;
     }
     plot.lines[plot.lines.size() - 2].points.emplace_back(static_cast<double>(row.gaussians), to.max);

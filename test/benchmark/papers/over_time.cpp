@@ -101,7 +101,7 @@ void addPlot(const OverTime& results, std::size_t scale, bool is_growing, Report
   plot.y = {"distance of samples to the truth [m]", app::AxisScale::Logarithmic};
   const auto add = [&](const OnlineRun& run, int colour) {
     for (const bool is_mean : {false, true}) {
-      app::PlotLine line{run.method + (is_mean ? ", mean" : ", maximum"), {}, colour, is_mean};
+      app::PlotLine line{run.method + (is_mean ? ", mean (dashed)" : ", maximum"), {}, colour, is_mean};
       for (const Checkpoint& point : run.scale[scale]) {
         const DistanceSummary& distances = is_growing ? point.growing : point.fixed;
         line.points.emplace_back(static_cast<double>(point.scans), is_mean ? distances.mean : distances.max);
