@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// OnlineOptions::yguel2009() and the settings that it stands for.
+// OnlineOptions::yguel2009() and each of its settings.
 #include <gtest/gtest.h>
 
 #include <algorithm>
