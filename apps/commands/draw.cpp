@@ -128,7 +128,8 @@ void addCellErrors(const GaussianMap<3>& map, int scale, double sigma, Panel& pa
   panel.is_filled = false;
 }
 
-/// Returns the scale to draw: that of --scale, or the default of the colour. Throws UsageError if there is none.
+/// Returns the scale to draw: that of --scale, or the default of the colour. Throws UsageError if the map does not have
+/// it.
 int scaleOf(const std::string& path, const GaussianMap<3>& map, const DrawCommand& options) {
   const int coarsest = map.scales() - 1, scale = options.scale.value_or(coarsest);
   checkScale("--scale", scale, map.scales(), path);

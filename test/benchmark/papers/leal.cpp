@@ -215,7 +215,7 @@ void claimCounts(const std::vector<LealResults>& all, Report& report) {
                 })});
 }
 
-/// Returns the measure with this number of particles. Throws std::out_of_range if there is none.
+/// Returns the measure with this number of particles. Throws std::out_of_range if it does not exist.
 benchmark::LealMeasure withParticles(const LealResults& results, int samples, double per_metre, bool in_bins) {
   for (const benchmark::LealParticleRow& row : results.particles)
     if (row.samples == samples && isSame(row.per_metre, per_metre) && row.in_bins == in_bins) return row.map;

@@ -39,7 +39,7 @@ struct OffLine {
 template <int D>
 OffLine runOffLine(const Sequence<D>& sequence);
 
-/// Returns the row of a method at a budget. Throws std::out_of_range if there is none.
+/// Returns the row of a method at a budget. Throws std::out_of_range if it does not exist.
 const RefinedRow& rowOf(const OffLine& results, const std::string& method, double budget);
 
 /// Adds the table and the plot of these results to the report.

@@ -40,7 +40,7 @@ struct OverTime {
   std::vector<OnlineRun> runs;
 };
 
-/// Returns the run of a method with 4 Gaussians per cell. Throws std::out_of_range if there is none.
+/// Returns the run of a method with 4 Gaussians per cell. Throws std::out_of_range if it does not exist.
 const OnlineRun& runOf(const OverTime& results, const std::string& method, bool is_limited);
 
 /// Runs Yguel 2009 sec. 6: maps the sequence on line with each method and budget (1, 3.4 and 4 Gaussians per cell), and
