@@ -165,7 +165,8 @@ TEST_F(EditingAsInPaper, HausdorffSamplesTheCellsAsPrinted) {
 TEST_F(EditingAsInPaper, SaysWhatDoesNotFit) {
   const std::string map = input(true, "all"), left = input(true, "left");
   expectUsageError("--max-cell-error", {"compress", map, "-o", own("x.gmap"), "--as-in-paper"});
-  expectUsageError("not with --as-in-paper", {"compress", map, "-o", own("x.gmap"), "--as-in-paper", "--max-error", "0.1"});
+  expectUsageError("not with --as-in-paper",
+                   {"compress", map, "-o", own("x.gmap"), "--as-in-paper", "--max-error", "0.1"});
   expectUsageError("--max-error or --max-cell-error", {"compress", map, "-o", own("x.gmap")});
   expectUsageError("--max-cell-error",
                    {"compress", map, "-o", own("x.gmap"), "--max-error", "0.1", "--max-cell-error", "9"});
